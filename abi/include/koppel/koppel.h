@@ -1,0 +1,326 @@
+/* koppel/koppel.h - embed koppel: read a scene, compile a mechanism, close and move it, stream its state.
+ *
+ * Rules that hold for every function
+ * - It returns a koppel_status: 0 fine, above 0 usable with remarks (bits), below 0 no result and all outputs
+ * untouched. Where `error` is not NULL it then holds what went wrong, where, and what to do.
+ * - Handles are made by _create/_open/_from/_compile and freed by the matching _destroy/_close; NULL may be freed.
+ *   A handle made from others keeps what it needs of them alive: they may be freed in any order.
+ * - A const handle may be used by many threads at once, a non-const one by one thread at a time.
+ * - Arrays belong to the caller and hold as many entries as koppel_sizes says; a wrong count is INVALID_ARGUMENT.
+ * - Text is UTF-8. A function that writes text takes a buffer and its size and sets *needed to the size of the whole
+ *   text with its final zero; it writes as much as fits, always ended by a zero. A NULL buffer only asks for the size.
+ * - Units are SI, angles radians; poses, twists and versions as in plugin.h.
+ * - Nothing is thrown, nothing is printed; the only callbacks are those that the host registered.
+ */
+#ifndef KOPPEL_KOPPEL_H
+#define KOPPEL_KOPPEL_H
+
+#include "koppel/plugin.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct koppel_engine koppel_engine;           /* plugins and log of one host */
+typedef struct koppel_diagnostics koppel_diagnostics; /* a list of findings about a scene */
+typedef struct koppel_scene koppel_scene;             /* a checked description */
+typedef struct koppel_mechanism koppel_mechanism;     /* a compiled scene; never changes */
+typedef struct koppel_state koppel_state;             /* where a mechanism stands */
+typedef struct koppel_work koppel_work;               /* scratch memory, one for each thread */
+typedef struct koppel_stream koppel_stream;           /* an open LCM stream */
+
+/* ------------------------------------------------------------------------------------------------ errors */
+
+enum { KOPPEL_SEVERITY_NOTE = 0, KOPPEL_SEVERITY_WARNING = 1, KOPPEL_SEVERITY_ERROR = 2 };
+
+typedef struct koppel_error {
+  uint32_t struct_size;
+  int32_t status;   /* the koppel_status that goes with it */
+  int32_t severity; /* KOPPEL_SEVERITY_NOTE ... */
+  int32_t line;     /* from 1; 0: no place in a file */
+  int32_t column;   /* from 1, counted in bytes */
+  int32_t length;   /* how many bytes it marks */
+  char code[8];     /* "E0312"; koppel_explain_code says more */
+  char file[512];
+  char source_line[512]; /* the line itself */
+  char element[128];     /* what it is about, e.g. "joint crank" */
+  char message[512];
+  char advice[512]; /* what to do instead; may be empty */
+} koppel_error;
+
+/* The long explanation of a code such as "E0312". INVALID_ARGUMENT: no such code. */
+KOPPEL_EXPORT koppel_status koppel_explain_code(const char* code, char* text, size_t size, size_t* needed);
+
+/* ------------------------------------------------------------------------------------------------ engine */
+
+typedef struct koppel_engine_options {
+  uint32_t struct_size;
+  /* Folders, separated by ':', that are searched for plugins. NULL: the environment variable KOPPEL_PLUGIN_PATH. */
+  const char* plugin_path;
+  /* A folder with the standard plugins as shared objects, to be used instead of the linked-in ones. NULL: the
+   * environment variable KOPPEL_STANDARD_PLUGINS, or if that is unset the linked-in ones. */
+  const char* standard_plugins;
+  /* Receives log lines of at least log_level; may be called from the stream's thread too. NULL: no logging. */
+  void (*log)(void* context, int32_t level, const char* message);
+  void* log_context;
+  int32_t log_level; /* KOPPEL_LOG_DEBUG ... */
+} koppel_engine_options;
+
+/* The version of this library. */
+KOPPEL_EXPORT koppel_version koppel_library_version(void);
+
+/* wanted_major, wanted_minor: KOPPEL_ABI_MAJOR and KOPPEL_ABI_MINOR of the header the host was compiled with. VERSION:
+ * the library has another major version or an older minor one. options: NULL for defaults. */
+KOPPEL_EXPORT koppel_status koppel_engine_create(uint32_t wanted_major, uint32_t wanted_minor,
+                                                 const koppel_engine_options* options, koppel_engine** engine,
+                                                 koppel_error* error);
+KOPPEL_EXPORT void koppel_engine_destroy(koppel_engine* engine);
+/* Adds the types of a plugin that is linked into the host. The entry must outlive everything made with the engine. */
+KOPPEL_EXPORT koppel_status koppel_engine_add_plugin(koppel_engine* engine, const koppel_plugin_entry* entry,
+                                                     koppel_error* error);
+/* Loads a shared object now instead of when a scene names it. */
+KOPPEL_EXPORT koppel_status koppel_engine_load_plugin(koppel_engine* engine, const char* path, koppel_error* error);
+
+/* ------------------------------------------------------------------------------------------------ diagnostics */
+
+KOPPEL_EXPORT koppel_status koppel_diagnostics_create(koppel_diagnostics** diagnostics);
+KOPPEL_EXPORT void koppel_diagnostics_destroy(koppel_diagnostics* diagnostics);
+KOPPEL_EXPORT size_t koppel_diagnostics_count(const koppel_diagnostics* diagnostics);
+KOPPEL_EXPORT koppel_status koppel_diagnostics_get(const koppel_diagnostics* diagnostics, size_t index,
+                                                   koppel_error* finding);
+/* All of them as text for a terminal: place, line, caret, advice. */
+KOPPEL_EXPORT koppel_status koppel_diagnostics_render(const koppel_diagnostics* diagnostics, char* text, size_t size,
+                                                      size_t* needed);
+
+/* ------------------------------------------------------------------------------------------------ scene */
+
+/* Reads and checks a scene. Every finding goes into `diagnostics` (may be NULL); `error` gets the first error. */
+KOPPEL_EXPORT koppel_status koppel_scene_from_file(koppel_engine* engine, const char* path,
+                                                   koppel_diagnostics* diagnostics, koppel_scene** scene,
+                                                   koppel_error* error);
+/* The same from text. directory: what relative file names in it refer to; NULL: they are errors. */
+KOPPEL_EXPORT koppel_status koppel_scene_from_text(koppel_engine* engine, const char* text, size_t length,
+                                                   const char* directory, koppel_diagnostics* diagnostics,
+                                                   koppel_scene** scene, koppel_error* error);
+KOPPEL_EXPORT void koppel_scene_destroy(koppel_scene* scene);
+
+/* ------------------------------------------------------------------------------------------------ mechanism */
+
+KOPPEL_EXPORT koppel_status koppel_mechanism_compile(const koppel_scene* scene, koppel_diagnostics* diagnostics,
+                                                     koppel_mechanism** mechanism, koppel_error* error);
+KOPPEL_EXPORT void koppel_mechanism_destroy(koppel_mechanism* mechanism);
+
+typedef struct koppel_sizes {
+  uint32_t struct_size;
+  uint32_t bodies; /* ground, number 0, included */
+  uint32_t joints;
+  uint32_t frames;      /* the named ones */
+  uint32_t coordinates; /* numbers in q, of all joints in file order */
+  uint32_t rates;       /* numbers in v and in a */
+  uint32_t inputs;      /* driven coordinates */
+  uint32_t records;     /* columns of recorded output */
+  uint32_t loops;       /* independent loops of the graph */
+  uint32_t constraints; /* constraint elements, not counting cut joints */
+  uint32_t equations;   /* closure equations in all */
+  uint32_t unknowns;    /* rates that a closure solves for */
+} koppel_sizes;
+
+KOPPEL_EXPORT koppel_status koppel_mechanism_sizes(const koppel_mechanism* mechanism, koppel_sizes* sizes);
+
+typedef struct koppel_settings {
+  uint32_t struct_size;
+  uint32_t steps;    /* of a run, as the scene proposes */
+  double duration;   /* [s] of a run, as the scene proposes */
+  double length;     /* [m] characteristic length: residuals in metres are divided by it */
+  double gravity[3]; /* [m/s^2] */
+  uint64_t hash;     /* of the scene's content and the library version */
+} koppel_settings;
+
+KOPPEL_EXPORT koppel_status koppel_mechanism_settings(const koppel_mechanism* mechanism, koppel_settings* settings);
+
+enum {
+  KOPPEL_KIND_BODY = 1,
+  KOPPEL_KIND_FRAME = 2,
+  KOPPEL_KIND_JOINT = 3,
+  KOPPEL_KIND_COORDINATE = 4, /* "joint.coordinate"; of a quaternion block "joint.coordinate.w" and so on */
+  KOPPEL_KIND_RATE = 5,
+  KOPPEL_KIND_INPUT = 6,
+  KOPPEL_KIND_RECORD = 7,
+  KOPPEL_KIND_EQUATION = 8,
+  KOPPEL_KIND_SCENE = 9 /* index 0: name, 1: title */
+};
+
+/* Name and unit of the index-th thing of a kind. Units: "m", "rad", "m/s", "1", ...; bodies and frames have "". */
+KOPPEL_EXPORT koppel_status koppel_mechanism_name(const koppel_mechanism* mechanism, int32_t kind, size_t index,
+                                                  char* text, size_t size, size_t* needed);
+KOPPEL_EXPORT koppel_status koppel_mechanism_unit(const koppel_mechanism* mechanism, int32_t kind, size_t index,
+                                                  char* text, size_t size, size_t* needed);
+/* INVALID_ARGUMENT if there is none; the error then proposes the nearest name. */
+KOPPEL_EXPORT koppel_status koppel_mechanism_find(const koppel_mechanism* mechanism, int32_t kind, const char* name,
+                                                  size_t* index, koppel_error* error);
+
+enum { KOPPEL_CUT_JOINT = 1, KOPPEL_CUT_BODY = 2, KOPPEL_CUT_NONE = 3 };
+
+/* One block of closure equations: a loop (the first `loops` of them), or a constraint. */
+typedef struct koppel_closure {
+  uint32_t struct_size;
+  int32_t kind;            /* where the loop is cut, or KOPPEL_CUT_NONE */
+  int32_t joint;           /* the joint that closes the loop; -1 for a constraint */
+  uint32_t first_equation; /* its equations are neighbours */
+  uint32_t equations;
+  uint32_t path; /* how many tree joints its equations depend on */
+} koppel_closure;
+
+/* index: below loops + constraints. path: NULL, or room for `path` joint numbers. */
+KOPPEL_EXPORT koppel_status koppel_mechanism_closure(const koppel_mechanism* mechanism, size_t index,
+                                                     koppel_closure* closure, uint32_t* path, size_t count);
+
+/* What was built and what was left out, how each loop is cut, equations and unknowns: a page of text. */
+KOPPEL_EXPORT koppel_status koppel_mechanism_explain(const koppel_mechanism* mechanism, char* text, size_t size,
+                                                     size_t* needed);
+
+/* Mass, centre and inertia of a body about its frame, as its plugin tells. */
+KOPPEL_EXPORT koppel_status koppel_body_inertia(const koppel_mechanism* mechanism, size_t body, koppel_inertia* inertia,
+                                                koppel_error* error);
+
+/* ------------------------------------------------------------------------------------------------ state */
+
+/* A state at time 0 with the scene's start values; not closed yet. */
+KOPPEL_EXPORT koppel_status koppel_state_create(const koppel_mechanism* mechanism, koppel_state** state);
+KOPPEL_EXPORT void koppel_state_destroy(koppel_state* state);
+/* Both must belong to the same mechanism. */
+KOPPEL_EXPORT koppel_status koppel_state_copy(const koppel_state* from, koppel_state* to);
+
+enum { KOPPEL_Q = 1, KOPPEL_V = 2, KOPPEL_A = 3 };
+
+/* q holds `coordinates` numbers, v and a `rates`. Cut joints' values included, angles not wrapped. Rates of a unit
+ * vector n are along the tangents t1 = normalised(e x n), t2 = n x t1, e the world axis that n has least of. */
+KOPPEL_EXPORT koppel_status koppel_state_get(const koppel_state* state, int32_t what, double* values, size_t count);
+/* Sets a start for the next close, of all coordinates; quaternions are normalised. The inputs keep their values. */
+KOPPEL_EXPORT koppel_status koppel_state_set(koppel_state* state, int32_t what, const double* values, size_t count);
+/* Moves to a time: every input takes value, rate and acceleration from its drive. */
+KOPPEL_EXPORT koppel_status koppel_state_set_time(koppel_state* state, double time, koppel_error* error);
+KOPPEL_EXPORT double koppel_state_time(const koppel_state* state);
+/* Sets one input by hand (until the next set_time). */
+KOPPEL_EXPORT koppel_status koppel_state_set_input(koppel_state* state, size_t input, double value, double rate,
+                                                   double acceleration);
+
+/* ------------------------------------------------------------------------------------------------ closing and moving
+ */
+
+KOPPEL_EXPORT koppel_status koppel_work_create(const koppel_mechanism* mechanism, koppel_work** work);
+KOPPEL_EXPORT void koppel_work_destroy(koppel_work* work);
+
+enum {
+  KOPPEL_VERDICT_OPEN = 0,      /* nothing to close */
+  KOPPEL_VERDICT_CLOSED = 1,    /* closed; REDUNDANT and NEAR_SINGULAR stand in the status */
+  KOPPEL_VERDICT_NOT_FOUND = 2, /* no closed position found from this start */
+  KOPPEL_VERDICT_RETRY = 3      /* the step was too large: halve it */
+};
+
+enum { KOPPEL_SOLVER_NONE = 0, KOPPEL_SOLVER_NEWTON = 1, KOPPEL_SOLVER_CERES = 2 };
+
+/* How a closure went. */
+typedef struct koppel_report {
+  uint32_t struct_size;
+  int32_t verdict;
+  int32_t solver;      /* the last that was used; NONE: the state was closed already */
+  uint32_t iterations; /* of all solvers together */
+  uint32_t rank;       /* of the equations, with respect to the unknowns */
+  uint32_t equations;
+  uint32_t unknowns;
+  double residual;         /* greatest equation, metres divided by the scene's length, radians as they are */
+  double condition;        /* ratio of extreme singular values (of those that count), estimated within a factor of 2 */
+  double coordinate_error; /* estimated greatest error of an unknown (radians, or metres over the scene's length) */
+} koppel_report;
+
+enum { KOPPEL_METHOD_AUTO = 0, KOPPEL_METHOD_NEWTON = 1, KOPPEL_METHOD_CERES = 2 };
+
+typedef struct koppel_close_options {
+  uint32_t struct_size;
+  int32_t method;          /* AUTO: Newton, then Ceres */
+  uint32_t max_iterations; /* 0: 50 for Newton, 500 for Ceres */
+  double tolerance;        /* 0: down to rounding */
+} koppel_close_options;
+
+/* Closes the loops with the inputs held at their values. A state that is closed stays as it is, bit for bit; if it
+ * fails the state is untouched. options and report may be NULL. */
+KOPPEL_EXPORT koppel_status koppel_close(koppel_state* state, koppel_work* work, const koppel_close_options* options,
+                                         koppel_report* report, koppel_error* error);
+/* Rates of a closed state from the rates of its inputs; free motions get the least norm. */
+KOPPEL_EXPORT koppel_status koppel_velocities(koppel_state* state, koppel_work* work, koppel_error* error);
+/* Accelerations; the velocities must have been computed. */
+KOPPEL_EXPORT koppel_status koppel_accelerations(koppel_state* state, koppel_work* work, koppel_error* error);
+/* One step of a run: set_time, close, velocities, accelerations. Steps too large are halved inside, and no further than
+ * 2^-12; after a failure the state is as before. */
+KOPPEL_EXPORT koppel_status koppel_move(koppel_state* state, koppel_work* work, double time, koppel_report* report,
+                                        koppel_error* error);
+
+/* Counts at the present position; singular values are those of the scaled Jacobian of all tree coordinates. */
+typedef struct koppel_analysis {
+  uint32_t struct_size;
+  int32_t mobility_count; /* Gruebler, spatial */
+  int32_t mobility_rank;  /* rates minus rank */
+  uint32_t rank;
+  uint32_t equations;
+  uint32_t tree_rates;
+  double largest_singular_value;
+  double last_singular_value; /* the smallest that counts */
+  double gap;                 /* last that counts over first that does not; infinity: none left */
+} koppel_analysis;
+
+KOPPEL_EXPORT koppel_status koppel_analyse(const koppel_state* state, koppel_work* work, koppel_analysis* analysis,
+                                           koppel_error* error);
+
+/* ------------------------------------------------------------------------------------------------ results */
+
+/* what: KOPPEL_KIND_BODY or KOPPEL_KIND_FRAME. poses: 12 numbers each, in the world. All `bodies` or all `frames` of
+ * them. */
+KOPPEL_EXPORT koppel_status koppel_poses(const koppel_state* state, koppel_work* work, int32_t what, double* poses,
+                                         size_t count);
+/* Twists in world axes, each at its own frame's origin: 6 numbers each. */
+KOPPEL_EXPORT koppel_status koppel_twists(const koppel_state* state, koppel_work* work, int32_t what, double* twists,
+                                          size_t count);
+/* [angular acceleration; acceleration of the origin] in world axes: 6 numbers each. */
+KOPPEL_EXPORT koppel_status koppel_frame_accelerations(const koppel_state* state, koppel_work* work, int32_t what,
+                                                       double* accelerations, size_t count);
+/* Geometric Jacobian of a body or frame: 6 x rates, row by row, world axes, at its origin; columns of joints that the
+ * spanning tree does not use are zero. rate: NULL, or its time derivative at the state's v. */
+KOPPEL_EXPORT koppel_status koppel_jacobian(const koppel_state* state, koppel_work* work, int32_t what, size_t index,
+                                            double* jacobian, double* rate, size_t count);
+/* The recorded columns, `records` numbers. */
+KOPPEL_EXPORT koppel_status koppel_records(const koppel_state* state, koppel_work* work, double* values, size_t count);
+
+/* ------------------------------------------------------------------------------------------------ stream */
+
+typedef struct koppel_stream_options {
+  uint32_t struct_size;
+  const char*
+      url; /* LCM provider: "udpm://239.255.76.67:7667?ttl=0", "file:///path?mode=w", "memq://"; NULL: LCM's default */
+  const char*
+      name;      /* channels are KOPPEL_<NAME>_STATE and so on; NULL: the scene's name. Letters, digits, underscore */
+  double period; /* [s] wall clock, least time between two published states; 0: every one */
+} koppel_stream_options;
+
+typedef struct koppel_stream_statistics {
+  uint32_t struct_size;
+  uint32_t reserved;
+  uint64_t published; /* states taken from the host */
+  uint64_t sent;      /* states that went out */
+  uint64_t dropped;   /* states overtaken by newer ones (network only; a file takes every one) */
+} koppel_stream_statistics;
+
+KOPPEL_EXPORT koppel_status koppel_stream_open(const koppel_mechanism* mechanism, const koppel_stream_options* options,
+                                               koppel_stream** stream, koppel_error* error);
+/* Hands over state, poses and report (NULL: none). Never waits for the network; a file may push back. */
+KOPPEL_EXPORT koppel_status koppel_stream_publish(koppel_stream* stream, const koppel_state* state, koppel_work* work,
+                                                  const koppel_report* report);
+/* Sends a line of text as event. severity: KOPPEL_SEVERITY_NOTE ... */
+KOPPEL_EXPORT koppel_status koppel_stream_event(koppel_stream* stream, double time, int32_t severity, const char* text);
+/* Sends what is waiting, closes and frees. statistics may be NULL. */
+KOPPEL_EXPORT koppel_status koppel_stream_close(koppel_stream* stream, koppel_stream_statistics* statistics);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* KOPPEL_KOPPEL_H */

@@ -59,6 +59,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+Error make_error(Code code, std::string element, std::string message, std::string advice) {
+  Error error;
+  error.code = code;
+  error.element = std::move(element);
+  error.message = std::move(message);
+  error.advice = std::move(advice);
+  return error;
+}
+
 std::string code_text(Code code, Severity severity) {
   std::string digits = std::to_string(static_cast<int>(code));
   return letter(severity) + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits;

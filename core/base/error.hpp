@@ -37,6 +37,9 @@ struct Error {
   std::string advice;   ///< what to do instead; may be empty
 };
 
+/// An error about an element, without a place in a text.
+Error make_error(Code code, std::string element, std::string message, std::string advice = {});
+
 /// The value, or why there is none.
 template <typename T>
 using Result = tl::expected<T, Error>;

@@ -1,0 +1,52 @@
+// What the opaque handles hold. Each keeps alive what it was made from.
+#pragma once
+
+#include <memory>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "closure/work.hpp"
+#include "koppel/koppel.h"
+#include "mechanism/mechanism.hpp"
+#include "mechanism/state.hpp"
+#include "plugin/registry.hpp"
+#include "scene/scene.hpp"
+#include "stream/publisher.hpp"
+
+struct koppel_engine {
+  koppel::Logger log;
+  std::shared_ptr<koppel::Registry> registry;
+};
+
+struct koppel_diagnostics {
+  koppel::Diagnostics list;
+};
+
+struct koppel_scene {
+  std::shared_ptr<koppel::Registry> registry;
+  koppel::Logger log;
+  std::shared_ptr<const koppel::Scene> scene;
+};
+
+struct koppel_mechanism {
+  std::shared_ptr<koppel::Registry> registry;
+  koppel::Logger log;
+  std::shared_ptr<const koppel::Mechanism> mechanism;
+};
+
+struct koppel_state {
+  std::shared_ptr<koppel::Registry> registry;
+  std::shared_ptr<const koppel::Mechanism> mechanism;
+  koppel::State state;
+};
+
+struct koppel_work {
+  std::shared_ptr<koppel::Registry> registry;
+  koppel::Work work;
+};
+
+struct koppel_stream {
+  std::shared_ptr<const koppel::Mechanism> mechanism;
+  std::unique_ptr<koppel::Publisher> publisher;
+  std::vector<double> poses;
+};

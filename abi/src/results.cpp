@@ -1,0 +1,103 @@
+#include "boundary.hpp"
+#include "closure/close.hpp"
+#include "mechanism/records.hpp"
+
+namespace {
+
+using koppel::Attachment;
+using koppel::Mechanism;
+using koppel::Pose;
+
+bool fit(const koppel_state* state, const koppel_work* work) {
+  return state != nullptr && work != nullptr && state->mechanism == work->work.mechanism;
+}
+
+std::size_t count_of(const Mechanism& m, std::int32_t what) {
+  if (what == KOPPEL_KIND_BODY) return m.bodies.size();
+  return what == KOPPEL_KIND_FRAME ? m.frames.size() : 0;
+}
+
+Attachment frame_of(const Mechanism& m, std::int32_t what, std::size_t i) {
+  if (what == KOPPEL_KIND_FRAME) return m.frames[i].on;
+  return {{static_cast<std::uint32_t>(i)}, Pose{}};
+}
+
+/// Forward kinematics at the state, then `write(kinematics, frame, out)` for each body or frame, `size` numbers each.
+template <typename Write>
+koppel_status each(const koppel_state* state, koppel_work* work, std::int32_t what, double* out, std::size_t count,
+                   std::size_t size, const Write& write) {
+  return koppel::guarded(nullptr, [&]() -> koppel_status {
+    if (!fit(state, work) || out == nullptr) return KOPPEL_INVALID_ARGUMENT;
+    const Mechanism& m = *state->mechanism;
+    const std::size_t things = count_of(m, what);
+    if (things == 0 || count != size * things) return KOPPEL_INVALID_ARGUMENT;
+    if (!koppel::realise(work->work, state->state)) return KOPPEL_PLUGIN;
+    for (std::size_t i = 0; i < things; ++i) {
+      write(work->work.equations.kinematics, frame_of(m, what, i), out + size * i);
+    }
+    return KOPPEL_OK;
+  });
+}
+
+using RowMajor6 = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
+
+}  // namespace
+
+koppel_status koppel_poses(const koppel_state* state, koppel_work* work, int32_t what, double* poses, size_t count) {
+  return each(state, work, what, poses, count, 12,
+              [](const koppel::Kinematics& kinematics, const Attachment& frame, double* out) {
+                const Pose pose = koppel::pose_of(kinematics, frame.body.value, frame.pose);
+                Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(out, 3, 3) = pose.rotation;
+                Eigen::Map<koppel::Vector3>(out + 9, 3) = pose.position;
+              });
+}
+
+koppel_status koppel_twists(const koppel_state* state, koppel_work* work, int32_t what, double* twists, size_t count) {
+  return each(state, work, what, twists, count, 6,
+              [](const koppel::Kinematics& kinematics, const Attachment& frame, double* out) {
+                const auto motion = koppel::motion_of(kinematics, frame.body.value, frame.pose.position);
+                Eigen::Map<koppel::Vector6>(out, 6) << motion.angular_velocity, motion.velocity;
+              });
+}
+
+koppel_status koppel_frame_accelerations(const koppel_state* state, koppel_work* work, int32_t what,
+                                         double* accelerations, size_t count) {
+  return each(state, work, what, accelerations, count, 6,
+              [](const koppel::Kinematics& kinematics, const Attachment& frame, double* out) {
+                const auto motion = koppel::motion_of(kinematics, frame.body.value, frame.pose.position);
+                Eigen::Map<koppel::Vector6>(out, 6) << motion.angular_acceleration, motion.acceleration;
+              });
+}
+
+koppel_status koppel_jacobian(const koppel_state* state, koppel_work* work, int32_t what, size_t index,
+                              double* jacobian, double* rate, size_t count) {
+  return koppel::guarded(nullptr, [&]() -> koppel_status {
+    if (!fit(state, work) || jacobian == nullptr) return KOPPEL_INVALID_ARGUMENT;
+    const Mechanism& m = *state->mechanism;
+    if (index >= count_of(m, what) || count != std::size_t{6} * m.nv) return KOPPEL_INVALID_ARGUMENT;
+    if (!koppel::realise(work->work, state->state)) return KOPPEL_PLUGIN;
+    koppel::Kinematics& kinematics = work->work.equations.kinematics;
+    const Attachment frame = frame_of(m, what, index);
+    koppel::Jacobian result;
+    if (rate != nullptr) {
+      if (!koppel::frame_jacobian_rate(m, state->state.q.data(), state->state.v.data(), kinematics, frame.body.value,
+                                       frame.pose.position, result)) {
+        return KOPPEL_PLUGIN;
+      }
+      Eigen::Map<RowMajor6>(rate, 6, m.nv) = result;
+    }
+    koppel::frame_jacobian(m, kinematics, frame.body.value, frame.pose.position, result);
+    Eigen::Map<RowMajor6>(jacobian, 6, m.nv) = result;
+    return KOPPEL_OK;
+  });
+}
+
+koppel_status koppel_records(const koppel_state* state, koppel_work* work, double* values, size_t count) {
+  return koppel::guarded(nullptr, [&]() -> koppel_status {
+    if (!fit(state, work) || values == nullptr) return KOPPEL_INVALID_ARGUMENT;
+    if (count != state->mechanism->record_columns.size()) return KOPPEL_INVALID_ARGUMENT;
+    if (!koppel::realise(work->work, state->state)) return KOPPEL_PLUGIN;
+    koppel::evaluate_records(*state->mechanism, state->state, work->work.equations.kinematics, values);
+    return KOPPEL_OK;
+  });
+}

@@ -1,0 +1,173 @@
+#include <cmath>
+#include <cstdio>
+
+#include "boundary.hpp"
+#include "closure/analysis.hpp"
+#include "closure/close.hpp"
+
+namespace {
+
+using koppel::Code;
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+/// What stands in the way, in words; texts are made only now that somebody asks.
+koppel_status explain_failure(koppel_status status, const koppel::Work& work, const koppel::State& state,
+                              koppel_error* error) {
+  const koppel::Mechanism& m = *work.mechanism;
+  koppel::Error e = koppel::make_error(Code::internal, "mechanism " + m.name, {});
+  switch (status) {
+    case KOPPEL_NOT_CLOSED:
+    case KOPPEL_RETRY: {
+      e.code = status == KOPPEL_RETRY ? Code::retry_smaller : Code::not_closed;
+      Eigen::Index worst = 0;
+      e.message = "no closed position found at time " + number(state.time) + " s";
+      if (work.equations.residual.size() > 0) {
+        const double off = work.equations.residual.cwiseAbs().maxCoeff(&worst);
+        e.message += ": `" + m.equation_names[static_cast<std::size_t>(worst)].name + "` stays open by " + number(off) +
+                     " (radians, or metres over the length " + number(m.length) + " m)";
+      }
+      e.advice = status == KOPPEL_RETRY ? "move the inputs in smaller steps"
+                                        : "give `start` values near a known position, or check lengths and inputs: the "
+                                          "mechanism may not reach this position";
+      break;
+    }
+    case KOPPEL_SINGULAR:
+      e.code = Code::inputs_inconsistent;
+      e.message = "the inputs ask for rates that are impossible at time " + number(state.time) + " s";
+      e.advice = "this is a limit position, or there are more inputs than freedoms: stop before it, or drive another "
+                 "coordinate";
+      break;
+    case KOPPEL_PLUGIN:
+      e.code = Code::plugin_misbehaved;
+      e.element = work.equations.culprit();
+      e.message = "a function of the plugin failed or gave a value that is not finite";
+      e.advice = "check the parameters of the element; if they are right, report it to the author of the plugin";
+      break;
+    default:
+      e.code = Code::not_closed_yet;
+      e.message = "the state is not closed for its inputs, or velocities are missing";
+      e.advice = "call close, then velocities, then accelerations";
+      break;
+  }
+  return koppel::fail(status, e, error);
+}
+
+koppel::CloseOptions options_of(const koppel_close_options* given) {
+  const koppel_close_options o = koppel::read_struct(given);
+  koppel::CloseOptions options;
+  options.method = o.method == KOPPEL_METHOD_NEWTON  ? koppel::Method::newton
+                   : o.method == KOPPEL_METHOD_CERES ? koppel::Method::ceres
+                                                     : koppel::Method::automatic;
+  options.max_iterations = o.max_iterations;
+  options.tolerance = o.tolerance;
+  return options;
+}
+
+void write_report(const koppel::Mechanism& m, const koppel::Report& report, koppel_report* to) {
+  if (to == nullptr) return;
+  koppel_report out{};
+  out.verdict = static_cast<std::int32_t>(report.verdict);
+  out.solver = static_cast<std::int32_t>(report.solver);
+  out.iterations = report.iterations;
+  out.rank = report.rank;
+  out.equations = m.rows;
+  out.unknowns = m.unknowns;
+  out.residual = report.residual;
+  out.condition = report.condition;
+  out.coordinate_error = report.coordinate_error;
+  koppel::write_struct(out, to);
+}
+
+bool fit(const koppel_state* state, const koppel_work* work) {
+  return state != nullptr && work != nullptr && state->mechanism == work->work.mechanism;
+}
+
+koppel_status misfit(koppel_error* error) {
+  return koppel::invalid_argument("state or work is NULL, or they belong to different mechanisms", error);
+}
+
+}  // namespace
+
+static_assert(static_cast<int>(koppel::Verdict::open) == KOPPEL_VERDICT_OPEN);
+static_assert(static_cast<int>(koppel::Verdict::closed) == KOPPEL_VERDICT_CLOSED);
+static_assert(static_cast<int>(koppel::Verdict::not_found) == KOPPEL_VERDICT_NOT_FOUND);
+static_assert(static_cast<int>(koppel::Verdict::retry) == KOPPEL_VERDICT_RETRY);
+static_assert(static_cast<int>(koppel::SolverUsed::none) == KOPPEL_SOLVER_NONE);
+static_assert(static_cast<int>(koppel::SolverUsed::newton) == KOPPEL_SOLVER_NEWTON);
+static_assert(static_cast<int>(koppel::SolverUsed::ceres) == KOPPEL_SOLVER_CERES);
+
+koppel_status koppel_work_create(const koppel_mechanism* mechanism, koppel_work** work) {
+  return koppel::guarded(nullptr, [&]() -> koppel_status {
+    if (mechanism == nullptr || work == nullptr) return KOPPEL_INVALID_ARGUMENT;
+    *work = new koppel_work{mechanism->registry, koppel::Work(mechanism->mechanism)};
+    return KOPPEL_OK;
+  });
+}
+
+void koppel_work_destroy(koppel_work* work) { delete work; }
+
+koppel_status koppel_close(koppel_state* state, koppel_work* work, const koppel_close_options* options,
+                           koppel_report* report, koppel_error* error) {
+  return koppel::guarded(error, [&]() -> koppel_status {
+    if (!fit(state, work)) return misfit(error);
+    koppel::Report result;
+    const koppel_status status = koppel::close(work->work, state->state, options_of(options), result);
+    write_report(*state->mechanism, result, report);
+    return status >= 0 ? status : explain_failure(status, work->work, state->state, error);
+  });
+}
+
+koppel_status koppel_velocities(koppel_state* state, koppel_work* work, koppel_error* error) {
+  return koppel::guarded(error, [&]() -> koppel_status {
+    if (!fit(state, work)) return misfit(error);
+    const koppel_status status = koppel::velocities(work->work, state->state);
+    return status >= 0 ? status : explain_failure(status, work->work, state->state, error);
+  });
+}
+
+koppel_status koppel_accelerations(koppel_state* state, koppel_work* work, koppel_error* error) {
+  return koppel::guarded(error, [&]() -> koppel_status {
+    if (!fit(state, work)) return misfit(error);
+    const koppel_status status = koppel::accelerations(work->work, state->state);
+    return status >= 0 ? status : explain_failure(status, work->work, state->state, error);
+  });
+}
+
+koppel_status koppel_move(koppel_state* state, koppel_work* work, double time, koppel_report* report,
+                          koppel_error* error) {
+  return koppel::guarded(error, [&]() -> koppel_status {
+    if (!fit(state, work)) return misfit(error);
+    if (!std::isfinite(time)) return koppel::invalid_argument("time is not finite", error);
+    koppel::Report result;
+    const koppel_status status = koppel::move(work->work, state->state, time, result);
+    write_report(*state->mechanism, result, report);
+    return status >= 0 ? status : explain_failure(status, work->work, state->state, error);
+  });
+}
+
+koppel_status koppel_analyse(const koppel_state* state, koppel_work* work, koppel_analysis* analysis,
+                             koppel_error* error) {
+  return koppel::guarded(error, [&]() -> koppel_status {
+    if (!fit(state, work) || analysis == nullptr) return misfit(error);
+    koppel::Analysis result;
+    if (!koppel::analyse(work->work, state->state, result)) {
+      return explain_failure(KOPPEL_PLUGIN, work->work, state->state, error);
+    }
+    koppel_analysis out{};
+    out.mobility_count = result.mobility_count;
+    out.mobility_rank = result.mobility_rank;
+    out.rank = result.rank;
+    out.equations = state->mechanism->rows;
+    out.tree_rates = state->mechanism->columns;
+    out.largest_singular_value = result.largest_singular_value;
+    out.last_singular_value = result.last_singular_value;
+    out.gap = result.gap;
+    koppel::write_struct(out, analysis);
+    return KOPPEL_OK;
+  });
+}

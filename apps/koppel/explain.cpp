@@ -1,0 +1,54 @@
+// koppel explain SCENE | CODE
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "koppel/command.hpp"
+
+namespace koppel::app {
+namespace {
+
+bool looks_like_code(const std::string& text) {
+  const std::size_t digits = !text.empty() && (text[0] == 'E' || text[0] == 'W' || text[0] == 'N') ? 1 : 0;
+  return text.size() > digits && std::all_of(text.begin() + static_cast<std::ptrdiff_t>(digits), text.end(),
+                                             [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+Exit explain_code(const std::string& code) {
+  const std::string text = text_of([&](char* buffer, std::size_t size, std::size_t* needed) {
+    return koppel_explain_code(code.c_str(), buffer, size, needed);
+  });
+  if (text.empty()) {
+    std::fprintf(stderr, "error: there is no finding with the code %s\n", code.c_str());
+    return Exit::usage;
+  }
+  std::puts(text.c_str());
+  return Exit::fine;
+}
+
+Exit explain_scene(const std::string& file, bool verbose) {
+  const Model model = load(file, verbose);
+  model.print_findings();
+  if (!model.mechanism) return model.outcome;
+  const std::string text = text_of([&](char* buffer, std::size_t size, std::size_t* needed) {
+    return koppel_mechanism_explain(model.mechanism.get(), buffer, size, needed);
+  });
+  std::fputs(text.c_str(), stdout);
+  return Exit::fine;
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app, const Common& common, Exit& outcome) {
+  CLI::App* command = app.add_subcommand(
+      "explain", "Tell what was built from a scene and how its loops are closed, or what a finding's code means");
+  auto subject = std::make_shared<std::string>();
+  command->add_option("SUBJECT", *subject, "A scene file, or a code such as E0312")->required()->type_name("");
+  command->callback([subject, &common, &outcome] {
+    outcome = looks_like_code(*subject) ? explain_code(*subject) : explain_scene(*subject, common.verbose);
+  });
+}
+
+}  // namespace koppel::app

@@ -1,0 +1,64 @@
+// The `koppel` command.
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "koppel/command.hpp"
+
+namespace {
+
+using namespace koppel::app;
+
+constexpr const char* description =
+    "koppel: mechanisms with closed loops, assembled, moved and streamed.\n"
+    "A mechanism is described in a scene, a TOML file; apps/scenes/README.md explains the language.";
+
+constexpr const char* footer =
+    "Examples:\n"
+    "  koppel check fourbar.toml                       find every fault; count freedoms; close once\n"
+    "  koppel explain fourbar.toml                     how the loops are cut, equations and unknowns\n"
+    "  koppel explain E0312                            what a finding means\n"
+    "  koppel run fourbar.toml                         move the drives as the scene proposes\n"
+    "  koppel run fourbar.toml --steps 1000 --csv -    and print the recorded columns\n"
+    "  koppel run fourbar.toml --log run.lcm           and keep every state in an LCM log\n"
+    "Exit codes:\n"
+    "  0 fine   1 the scene has errors   2 wrong usage   3 the mechanism did not close   4 a file, a stream or the\n"
+    "  system failed\n"
+    "Results go to standard output, findings and progress to standard error.";
+
+std::string version_text() {
+  const koppel_version library = koppel_library_version();
+  return "koppel " + std::to_string(library.major) + '.' + std::to_string(library.minor) + '.' +
+         std::to_string(library.patch);
+}
+
+int command(int argc, char** argv) {
+  CLI::App app(description, "koppel");
+  app.footer(footer);
+  app.set_version_flag("--version", version_text());
+  app.require_subcommand(1);
+  app.fallthrough();
+  Common common;
+  Exit outcome = Exit::fine;
+  app.add_flag("-v,--verbose", common.verbose, "Print the library's log on standard error");
+  add_check(app, common, outcome);
+  add_explain(app, common, outcome);
+  add_run(app, common, outcome);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(Exit::usage);
+  }
+  return static_cast<int>(outcome);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return command(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return static_cast<int>(koppel::app::Exit::system);
+  }
+}

@@ -1,0 +1,246 @@
+// koppel run SCENE
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <unistd.h>
+
+#include "common/table.hpp"
+#include "koppel/command.hpp"
+#include "koppel/summary.hpp"
+
+namespace koppel::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::string scene;
+  std::optional<double> duration;
+  std::optional<std::uint32_t> steps;
+  std::string csv, lcm, log, name;
+  bool realtime = false;
+  bool quiet = false;
+  bool json = false;
+};
+
+/// One run of one scene. Each part returns what went wrong, if anything; run() goes through all of them.
+class Run {
+ public:
+  Run(const Model& model, const Options& options)
+      : model_(model),
+        options_(options),
+        motion_(start(model)),
+        steps_(options.steps.value_or(model.settings().steps)),
+        duration_(options.duration.value_or(model.settings().duration)),
+        records_(model.sizes().records) {}
+
+  Exit run() {
+    if (!open()) return outcome_;
+    const Clock::time_point begin = Clock::now();
+    for (std::uint32_t i = 0; i <= steps_; ++i) {
+      const double time = duration_ * i / steps_;
+      if (options_.realtime) std::this_thread::sleep_until(begin + std::chrono::duration<double>(time));
+      if (!step(i, time)) break;
+      show_progress(i);
+    }
+    close();
+    return outcome_;
+  }
+
+  /// False: not even the first position was found.
+  bool started() const { return started_; }
+
+  void print(std::FILE* out) const {
+    std::fprintf(out, "%s: %u of %u steps over %.6g s\n", model_.name(KOPPEL_KIND_SCENE, 0).c_str(), summary_.steps(),
+                 steps_, duration_);
+    std::fprintf(out, "mobility    %d by rank, %d by count\n", analysis_.mobility_rank, analysis_.mobility_count);
+    summary_.print(out);
+    if (streamed_) {
+      std::fprintf(out, "stream      %llu states sent, %llu dropped\n",
+                   static_cast<unsigned long long>(statistics_.sent),
+                   static_cast<unsigned long long>(statistics_.dropped));
+    }
+  }
+
+  nlohmann::ordered_json to_json() const {
+    nlohmann::ordered_json document;
+    document["scene"] = model_.name(KOPPEL_KIND_SCENE, 0);
+    document["closed"] = outcome_ != Exit::not_closed;
+    document["duration"] = duration_;
+    document["mobility"] = json_of(analysis_);
+    document["jacobian_rank"] = analysis_.rank;
+    summary_.write(document);
+    if (streamed_) {
+      document["stream"] = {
+          {"published", statistics_.published}, {"sent", statistics_.sent}, {"dropped", statistics_.dropped}};
+    }
+    if (outcome_ != Exit::fine) document["error"] = json_of(error_);
+    return document;
+  }
+
+ private:
+  /// Keeps the outcome of a call that failed; false: it did.
+  bool good(koppel_status status) {
+    if (status >= 0) return true;
+    outcome_ = exit_of(status);
+    if (!options_.json) print_error(error_);
+    return false;
+  }
+
+  bool open() {
+    if (!motion_.state || !motion_.work) return good(KOPPEL_NO_MEMORY);
+    if (!options_.csv.empty()) {
+      std::vector<std::string> columns = model_.names(KOPPEL_KIND_RECORD, records_);
+      columns.insert(columns.begin(), "time");
+      columns.emplace_back("residual");
+      table_.emplace(options_.csv, columns);
+      if (!table_->good()) return table_failed();
+    }
+    const std::string url = options_.log.empty() ? options_.lcm : "file://" + options_.log + "?mode=w";
+    if (url.empty()) return true;
+    auto stream_options = sized<koppel_stream_options>();
+    stream_options.url = url.c_str();
+    stream_options.name = options_.name.empty() ? nullptr : options_.name.c_str();
+    koppel_stream* stream = nullptr;
+    // A URL that LCM refuses is no fault in the scene or in the usage of this program.
+    if (!good(koppel_stream_open(model_.mechanism.get(), &stream_options, &stream, &error_))) {
+      outcome_ = Exit::system;
+      return false;
+    }
+    stream_.reset(stream);
+    streamed_ = true;
+    return true;
+  }
+
+  bool step(std::uint32_t index, double time) {
+    auto report = sized<koppel_report>();
+    koppel_state* state = motion_.state.get();
+    koppel_work* work = motion_.work.get();
+    const Clock::time_point before = Clock::now();
+    const koppel_status status = koppel_move(state, work, time, &report, &error_);
+    const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
+    if (status < 0) {
+      if (!options_.json) std::fprintf(stderr, "step %u, t = %.6g s:\n", index, time);
+      return good(status);
+    }
+    if (index == 0) {
+      started_ = true;
+      summary_.assemble(status, report, seconds);
+      if (!good(koppel_analyse(state, work, &analysis_, &error_))) return false;
+    } else {
+      summary_.add(time, status, report, seconds);
+    }
+    return write(time, report);
+  }
+
+  bool write(double time, const koppel_report& report) {
+    koppel_state* state = motion_.state.get();
+    if (stream_ && !good(koppel_stream_publish(stream_.get(), state, motion_.work.get(), &report))) return false;
+    if (!table_) return true;
+    row_.resize(records_ + 2);
+    row_.front() = time;
+    row_.back() = report.residual;
+    return good(koppel_records(state, motion_.work.get(), row_.data() + 1, records_)) && (table_->row(row_), true);
+  }
+
+  void show_progress(std::uint32_t index) const {
+    if (options_.quiet || options_.json || isatty(STDERR_FILENO) == 0) return;
+    const bool last = index == steps_;
+    if (last || index * 100ull / steps_ != (index + 1) * 100ull / steps_) {
+      std::fprintf(stderr, "\r%u of %u steps%s", index, steps_, last ? "\r\033[K" : "");
+    }
+  }
+
+  void close() {
+    if (stream_ && koppel_stream_close(stream_.release(), &statistics_) < 0 && outcome_ == Exit::fine) {
+      outcome_ = Exit::system;
+      std::fputs("error: the stream could not be finished\n", stderr);
+    }
+    if (table_ && !table_->good() && outcome_ == Exit::fine) table_failed();
+  }
+
+  bool table_failed() {
+    outcome_ = Exit::system;
+    std::fprintf(stderr, "error: cannot write %s\n", options_.csv.c_str());
+    return false;
+  }
+
+  const Model& model_;
+  const Options& options_;
+  Motion motion_;
+  std::uint32_t steps_;
+  double duration_;
+  std::size_t records_;
+  std::optional<Table> table_;
+  std::vector<double> row_;
+  Stream stream_;
+  bool streamed_ = false;
+  bool started_ = false;
+  koppel_stream_statistics statistics_ = sized<koppel_stream_statistics>();
+  koppel_analysis analysis_ = sized<koppel_analysis>();
+  Summary summary_;
+  koppel_error error_ = sized<koppel_error>();
+  Exit outcome_ = Exit::fine;
+};
+
+Exit run(const Options& options, bool verbose) {
+  const Model model = load(options.scene, verbose);
+  if (!model.mechanism) {
+    if (options.json) print_json({{"closed", nullptr}, {"error", json_of(model.error)}});
+    model.print_findings();
+    return model.outcome;
+  }
+  if (!options.quiet) model.print_findings();
+  Run run(model, options);
+  const Exit outcome = run.run();
+  if (options.json) {
+    print_json(run.to_json());
+  } else if (!options.quiet && run.started()) {
+    run.print(options.csv == "-" ? stderr : stdout);
+  }
+  return outcome;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, const Common& common, Exit& outcome) {
+  CLI::App* command =
+      app.add_subcommand("run", "Move the drives of a scene over time; record, stream, tell how exactly and how fast");
+  auto options = std::make_shared<Options>();
+  command->add_option("SCENE", options->scene, "The scene file")->required()->type_name("");
+  command->add_option("--duration", options->duration, "How long to run; default: as the scene proposes")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
+  command->add_option("--steps", options->steps, "Number of steps; default: as the scene proposes")
+      ->check(CLI::Range(1u, 1000000000u))
+      ->type_name("N");
+  CLI::Option* csv =
+      command
+          ->add_option("--csv", options->csv,
+                       "Write time, recorded columns (SI units, radians) and residual; - is standard output")
+          ->type_name("FILE");
+  CLI::Option* lcm =
+      command
+          ->add_option("--lcm", options->lcm, "Stream to an LCM provider, for example udpm://239.255.76.67:7667?ttl=0")
+          ->type_name("URL");
+  command->add_option("--log", options->log, "Keep the stream in an LCM log")->excludes(lcm)->type_name("FILE");
+  command->add_option("--name", options->name, "Channels are KOPPEL_<NAME>_STATE and so on; default: the scene's name")
+      ->type_name("NAME");
+  command->add_flag("--realtime", options->realtime, "Let a second of the run take a second");
+  command->add_flag("-q,--quiet", options->quiet, "Print errors only");
+  command->add_flag("--json", options->json, "Print the summary as JSON");
+  command->callback([options, csv, &common, &outcome] {
+    if (options->json && csv->count() > 0 && options->csv == "-") {
+      throw CLI::ValidationError("--csv", "standard output cannot take both the table and --json");
+    }
+    outcome = run(*options, common.verbose);
+  });
+}
+
+}  // namespace koppel::app

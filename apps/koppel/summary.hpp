@@ -1,0 +1,49 @@
+// What a run was like: accuracy, effort and time of its steps.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "koppel/command.hpp"
+
+namespace koppel::app {
+
+/// A median and the half width of its 95 % interval.
+struct Median {
+  double value = 0.0;
+  double error = 0.0;
+};
+
+/// Median of a sample. The interval is that of a notched box plot, 1.57 times the interquartile range over the root of
+/// the sample's size (McGill, Tukey, Larsen 1978).
+Median median(std::vector<double> sample);
+
+/// Takes in the report of the first closure and of each step after it.
+class Summary {
+ public:
+  void assemble(koppel_status status, const koppel_report& report, double seconds);
+  /// seconds: what the step took by the wall clock.
+  void add(double time, koppel_status status, const koppel_report& report, double seconds);
+
+  std::uint32_t steps() const { return static_cast<std::uint32_t>(seconds_.size()); }
+  void print(std::FILE* out) const;
+  void write(nlohmann::ordered_json& document) const;
+
+ private:
+  void take_accuracy(double time, koppel_status status, const koppel_report& report);
+
+  std::vector<double> seconds_;
+  double assembly_seconds_ = 0.0;
+  std::uint32_t assembly_iterations_ = 0;
+  double worst_residual_ = 0.0;
+  double worst_time_ = 0.0;
+  double worst_coordinate_error_ = 0.0;
+  double least_condition_ = 0.0;
+  double greatest_condition_ = 0.0;
+  std::uint64_t iterations_ = 0;
+  std::uint32_t most_iterations_ = 0;
+  std::uint32_t ceres_steps_ = 0;
+  koppel_status remarks_ = KOPPEL_OK;
+};
+
+}  // namespace koppel::app

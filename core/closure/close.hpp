@@ -1,0 +1,40 @@
+// Closing, moving and differentiating a mechanism.
+#pragma once
+
+#include <cstdint>
+
+#include "closure/report.hpp"
+#include "closure/work.hpp"
+#include "koppel/plugin.h"
+#include "mechanism/state.hpp"
+
+namespace koppel {
+
+enum class Method { automatic, newton, ceres };
+
+struct CloseOptions {
+  Method method = Method::automatic;
+  std::uint32_t max_iterations = 0;  ///< 0: 50 for Newton, 500 for Ceres
+  double tolerance = 0.0;            ///< 0: down to rounding
+};
+
+/// Closes the loops with the inputs held at the state's values. A state that was closed before is followed from there,
+/// in smaller steps of the inputs if need be; another is assembled: by Newton if it is near, by Ceres from further away,
+/// last by letting the inputs go, closing, and leading them back.
+/// Status: as koppel_status; KOPPEL_NOT_CLOSED, KOPPEL_RETRY and KOPPEL_PLUGIN leave the state untouched.
+koppel_status close(Work& work, State& state, const CloseOptions& options, Report& report);
+
+/// Rates of a closed state from those of its inputs (K-II-3.5.1b); free motions get the least norm. KOPPEL_SINGULAR: the
+/// inputs' rates are impossible here. KOPPEL_INVALID_ARGUMENT: the state is not closed.
+koppel_status velocities(Work& work, State& state);
+
+/// Accelerations, likewise (K-II-3.6.1); the state must have velocities.
+koppel_status accelerations(Work& work, State& state);
+
+/// To another time: inputs, closure, velocities, accelerations; on failure the state is as before.
+koppel_status move(Work& work, State& state, double time, Report& report);
+
+/// Forward kinematics at the state, with its rates and accelerations; results are in work.equations.kinematics.
+bool realise(Work& work, const State& state);
+
+}  // namespace koppel

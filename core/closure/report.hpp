@@ -1,0 +1,21 @@
+// How a closure went.
+#pragma once
+
+#include <cstdint>
+
+namespace koppel {
+
+enum class Verdict { open, closed, not_found, retry };
+enum class SolverUsed { none, newton, ceres };
+
+struct Report {
+  Verdict verdict = Verdict::open;
+  SolverUsed solver = SolverUsed::none;  ///< the last that was used
+  std::uint32_t iterations = 0;          ///< of all solvers together
+  std::uint32_t rank = 0;                ///< of the equations with respect to the unknowns
+  double residual = 0.0;                 ///< greatest scaled equation
+  double condition = 1.0;                ///< ratio of extreme singular values that count, estimated
+  double coordinate_error = 0.0;         ///< estimated greatest error of an unknown, in radians' size
+};
+
+}  // namespace koppel

@@ -1,0 +1,25 @@
+#include "closure/work.hpp"
+
+#include "closure/ceres_closure.hpp"
+
+namespace koppel {
+
+Work::Work(std::shared_ptr<const Mechanism> m)
+    : mechanism(std::move(m)),
+      equations(*mechanism),
+      factorisation(mechanism->rows, mechanism->unknowns),
+      q(mechanism->nq),
+      q_trial(mechanism->nq),
+      q_start(mechanism->nq),
+      delta(mechanism->nv),
+      rhs(mechanism->rows),
+      rhs_copy(mechanism->rows),
+      step(mechanism->columns),
+      rest(Eigen::VectorXd::Zero(mechanism->nv)),
+      saved(*mechanism) {
+  factorised_at.resize(mechanism->nq);
+}
+
+Work::~Work() = default;
+
+}  // namespace koppel

@@ -1,0 +1,41 @@
+// Scratch memory of the solvers: one for each thread. Made once; stepping allocates nothing.
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "closure/equations.hpp"
+#include "closure/factorisation.hpp"
+#include "mechanism/mechanism.hpp"
+#include "mechanism/state.hpp"
+
+namespace koppel {
+
+class CeresClosure;
+
+struct Work {
+  explicit Work(std::shared_ptr<const Mechanism> mechanism);
+  ~Work();
+  Work(const Work&) = delete;
+  Work& operator=(const Work&) = delete;
+
+  std::shared_ptr<const Mechanism> mechanism;
+  Equations equations;
+  Factorisation factorisation;          ///< of the columns of the unknowns
+  bool factorised = false;              ///< equations stand, and `factorisation` holds, at the position below
+  Eigen::VectorXd factorised_at;        ///< nq
+  double factorised_time = 0.0;
+
+  Eigen::VectorXd q, q_trial, q_start;  ///< nq
+  Eigen::VectorXd delta;                ///< nv
+  Eigen::VectorXd rhs, rhs_copy;        ///< rows
+  Eigen::VectorXd step;                 ///< columns
+  Eigen::VectorXd rest;                 ///< nv zeros
+  State saved;                          ///< what a failed move goes back to
+
+  std::unique_ptr<CeresClosure> ceres;  ///< built on first need
+  std::unique_ptr<Factorisation> all_columns;  ///< when the inputs are free too; built on first need
+};
+
+}  // namespace koppel

@@ -1,0 +1,358 @@
+#include "mechanism/joint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mechanism/coordinates.hpp"
+#include "mechanism/difference.hpp"
+#include "plugin/motion.hpp"
+#include "spatial/rotation.hpp"
+
+namespace koppel {
+namespace {
+
+using JointVector = std::array<double, max_joint_coordinates>;
+
+bool all_finite(const double* values, std::size_t count) {
+  return std::all_of(values, values + count, [](double x) { return std::isfinite(x); });
+}
+
+Motion compiled(const koppel_motion& from, const JointBlock& block) {
+  Motion motion;
+  switch (from.kind) {
+    case KOPPEL_MOTION_ROTATION: motion.kind = MotionKind::rotation; break;
+    case KOPPEL_MOTION_TRANSLATION: motion.kind = MotionKind::translation; break;
+    case KOPPEL_MOTION_SCREW: motion.kind = MotionKind::screw; break;
+    default: motion.kind = MotionKind::free_rotation; break;
+  }
+  motion.q = block.q;
+  motion.v = block.v;
+  motion.zero = block.described.zero;
+  motion.axis = Vector3(from.axis[0], from.axis[1], from.axis[2]);
+  if (motion.kind != MotionKind::translation) motion.point = Vector3(from.point[0], from.point[1], from.point[2]);
+  if (motion.kind == MotionKind::screw) motion.pitch = from.pitch;
+  return motion;
+}
+
+/// Applies one elementary motion, or its inverse, to a frame and writes its columns.
+void step_one(const Motion& motion, const double* q, bool reversed, Pose& frame, Column* columns) {
+  const double sign = reversed ? -1.0 : 1.0;
+  if (motion.kind == MotionKind::free_rotation) {
+    const Matrix3 turn = rotation_of_quaternion<double>(Vector4(q[0], q[1], q[2], q[3]));
+    const Vector3 centre = frame * motion.point;
+    const Matrix3 before = frame.rotation;
+    frame.rotation = reversed ? Matrix3(before * turn.transpose()) : Matrix3(before * turn);
+    frame.position = centre - frame.rotation * motion.point;
+    // The rates are components in outlet axes: those after the turn, or before it when the joint is walked backwards.
+    const Matrix3& outlet = reversed ? before : frame.rotation;
+    for (int i = 0; i < 3; ++i) columns[i] = {sign * outlet.col(i), Vector3::Zero(), centre};
+    return;
+  }
+  const double value = sign * (q[0] - motion.zero);
+  const Vector3 axis = frame.rotation * motion.axis;
+  if (motion.kind == MotionKind::translation) {
+    frame.position += value * axis;
+    columns[0] = {Vector3::Zero(), sign * axis, frame.position};
+    return;
+  }
+  const Vector3 on_axis = frame * motion.point;
+  const Vector3 advance = motion.pitch * axis;
+  frame.rotation = frame.rotation * rotation_about<double>(motion.axis, value);
+  frame.position = on_axis - frame.rotation * motion.point + value * advance;
+  columns[0] = {sign * axis, sign * advance, on_axis};
+}
+
+/// Carries a motion over one elementary motion whose columns are given (K-II-2.1).
+void step_motion_one(const Motion& motion, const double* v, const double* a, const Column* columns, FrameMotion& state) {
+  state.shift(columns[0].point);
+  Vector3 turn = Vector3::Zero(), slide = Vector3::Zero();
+  Vector3 turn_rate = Vector3::Zero(), slide_rate = Vector3::Zero();
+  const int count = motion.kind == MotionKind::free_rotation ? 3 : 1;
+  for (int i = 0; i < count; ++i) {
+    turn += v[i] * columns[i].angular;
+    slide += v[i] * columns[i].linear;
+    turn_rate += a[i] * columns[i].angular;
+    slide_rate += a[i] * columns[i].linear;
+  }
+  state.acceleration += 2.0 * state.angular_velocity.cross(slide) + slide_rate;
+  state.angular_acceleration += state.angular_velocity.cross(turn) + turn_rate;
+  state.velocity += slide;
+  state.angular_velocity += turn;
+}
+
+}  // namespace
+
+Result<Joint> Joint::build(const JointDescription& description) {
+  Joint joint;
+  joint.name = description.name;
+  joint.type = description.type;
+  joint.inlet = description.inlet;
+  joint.outlet = description.outlet;
+  for (std::size_t i = 0; i < joint.type->blocks.size(); ++i) {
+    const BlockKind kind = joint.type->blocks[i].kind;
+    joint.blocks.push_back({kind, joint.nq, joint.nv, description.coordinates[i]});
+    joint.nq += static_cast<std::uint32_t>(coordinate_count(kind));
+    joint.nv += static_cast<std::uint32_t>(rate_count(kind));
+  }
+  const auto located = [&](Error error) {
+    error.source = description.source;
+    error.element = "joint " + description.name;
+    return error;
+  };
+  auto instance = joint.type->create(description.values);
+  if (!instance) return tl::make_unexpected(located(std::move(instance).error()));
+  joint.instance_ = std::move(*instance);
+  if (joint.is_product() && joint.nv > 0) {
+    auto motions = joint_motions(*joint.type, joint.instance_);
+    if (!motions) return tl::make_unexpected(located(std::move(motions).error()));
+    for (const koppel_motion& m : *motions) joint.motions_.push_back(compiled(m, joint.blocks[m.coordinate]));
+  }
+  return joint;
+}
+
+std::vector<std::string> Joint::numerical_parts() const {
+  std::vector<std::string> parts;
+  if (is_product()) return parts;
+  if (type->calls.subspace == nullptr) parts.emplace_back("subspace");
+  if (type->calls.bias == nullptr) parts.emplace_back("bias");
+  return parts;
+}
+
+bool Joint::step(const double* joint_q, bool reversed, Pose& frame, Column* columns) const {
+  if (is_product()) {
+    const std::size_t n = motions_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Motion& motion = motions_[reversed ? n - 1 - i : i];
+      step_one(motion, joint_q + motion.q, reversed, frame, columns + motion.v);
+    }
+    return true;
+  }
+  Pose relative;
+  Subspace s(6, nv);
+  if (!callback_pose(joint_q, relative) || !callback_subspace(joint_q, s)) return false;
+  const Pose near = frame;
+  frame = near * (reversed ? relative.inverse() : relative);
+  const Pose& at_outlet = reversed ? near : frame;
+  const double sign = reversed ? -1.0 : 1.0;
+  for (std::uint32_t i = 0; i < nv; ++i) {
+    columns[i] = {sign * (at_outlet.rotation * s.col(i).head<3>()), sign * (at_outlet.rotation * s.col(i).tail<3>()),
+                  at_outlet.position};
+  }
+  return true;
+}
+
+bool Joint::step_motion(const double* joint_q, const double* joint_v, const double* joint_a, bool reversed,
+                        const Pose& near, const Pose& far, const Column* columns, FrameMotion& motion) const {
+  if (is_product()) {
+    const std::size_t n = motions_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Motion& m = motions_[reversed ? n - 1 - i : i];
+      step_motion_one(m, joint_v + m.v, joint_a + m.v, columns + m.v, motion);
+    }
+    motion.shift(far.position);
+    return true;
+  }
+  Vector6 relative_bias;
+  if (!callback_bias(joint_q, joint_v, joint_v, relative_bias)) return false;
+  // Relative velocity and its rate in outlet axes, turned into world axes; of the outlet against the inlet.
+  const Matrix3& axes = reversed ? near.rotation : far.rotation;
+  Vector3 turn = Vector3::Zero(), slide = Vector3::Zero();
+  Vector3 turn_rate = axes * relative_bias.head<3>(), slide_rate = axes * relative_bias.tail<3>();
+  const double sign = reversed ? -1.0 : 1.0;
+  for (std::uint32_t i = 0; i < nv; ++i) {
+    turn += sign * joint_v[i] * columns[i].angular;
+    slide += sign * joint_v[i] * columns[i].linear;
+    turn_rate += sign * joint_a[i] * columns[i].angular;
+    slide_rate += sign * joint_a[i] * columns[i].linear;
+  }
+  if (!reversed) {
+    motion.shift(far.position);  // the inlet's motion, at the outlet's place
+    const Vector3 before = motion.angular_velocity;
+    motion.acceleration += 2.0 * before.cross(slide) + turn.cross(slide) + slide_rate;
+    motion.angular_acceleration += before.cross(turn) + turn_rate;
+    motion.velocity += slide;
+    motion.angular_velocity += turn;
+    return true;
+  }
+  // Backwards: motion is the outlet's; solve the same relations for the inlet's.
+  motion.shift(near.position);
+  const Vector3 outlet_turn = motion.angular_velocity, outlet_alpha = motion.angular_acceleration;
+  motion.angular_velocity = outlet_turn - turn;
+  motion.angular_acceleration = outlet_alpha - motion.angular_velocity.cross(turn) - turn_rate;
+  // At the outlet's place the inlet's field has these values; then move it home.
+  motion.velocity -= slide;
+  motion.acceleration -= 2.0 * motion.angular_velocity.cross(slide) + turn.cross(slide) + slide_rate;
+  motion.shift(far.position);
+  return true;
+}
+
+bool Joint::column_rates(const double* joint_q, const double* joint_v, bool reversed, const Pose& near, const Pose& far,
+                         const Column* columns, FrameMotion motion, ColumnRate* rates) const {
+  const std::array<double, max_joint_rates> rest{};
+  if (is_product()) {
+    const std::size_t n = motions_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Motion& m = motions_[reversed ? n - 1 - i : i];
+      const bool turns_with_far_side = m.kind == MotionKind::free_rotation && !reversed;
+      motion.shift(columns[m.v].point);
+      const FrameMotion before = motion;
+      step_motion_one(m, joint_v + m.v, rest.data(), columns + m.v, motion);
+      const Vector3 turning = turns_with_far_side ? motion.angular_velocity : before.angular_velocity;
+      for (std::uint32_t k = m.v; k < m.v + (m.kind == MotionKind::free_rotation ? 3u : 1u); ++k) {
+        rates[k] = {turning.cross(columns[k].angular), turning.cross(columns[k].linear), before.velocity};
+      }
+    }
+    return true;
+  }
+  // The columns are components in outlet axes: they turn with the outlet, and change with S.
+  if (!reversed && !step_motion(joint_q, joint_v, rest.data(), false, near, far, columns, motion)) return false;
+  const Pose& at_outlet = reversed ? near : far;
+  motion.shift(at_outlet.position);
+  const double sign = reversed ? -1.0 : 1.0;
+  for (std::uint32_t k = 0; k < nv; ++k) {
+    std::array<double, max_joint_rates> unit{};
+    unit[k] = 1.0;
+    Vector6 s_rate;
+    if (!callback_bias(joint_q, joint_v, unit.data(), s_rate)) return false;
+    rates[k] = {motion.angular_velocity.cross(columns[k].angular) + sign * (at_outlet.rotation * s_rate.head<3>()),
+                motion.angular_velocity.cross(columns[k].linear) + sign * (at_outlet.rotation * s_rate.tail<3>()),
+                motion.velocity};
+  }
+  return true;
+}
+
+bool Joint::pose(const double* joint_q, Pose& result) const {
+  if (!is_product()) return callback_pose(joint_q, result);
+  std::array<Column, max_joint_rates> columns;
+  result = Pose{};
+  return step(joint_q, false, result, columns.data());
+}
+
+bool Joint::subspace(const double* joint_q, Subspace& s) const {
+  s.resize(6, nv);
+  if (!is_product()) return callback_subspace(joint_q, s);
+  std::array<Column, max_joint_rates> columns;
+  Pose far;
+  step(joint_q, false, far, columns.data());
+  for (std::uint32_t i = 0; i < nv; ++i) {
+    const Column& c = columns[i];
+    s.col(i) << far.rotation.transpose() * c.angular,
+        far.rotation.transpose() * (c.linear + c.angular.cross(far.position - c.point));
+  }
+  return true;
+}
+
+bool Joint::bias(const double* joint_q, const double* joint_v, Vector6& result) const {
+  if (!is_product()) return callback_bias(joint_q, joint_v, joint_v, result);
+  std::array<Column, max_joint_rates> columns;
+  Pose far;
+  step(joint_q, false, far, columns.data());
+  FrameMotion motion;
+  const std::array<double, max_joint_rates> rest{};
+  step_motion(joint_q, joint_v, rest.data(), false, Pose{}, far, columns.data(), motion);
+  // Components in outlet axes: their rates lack the turning of the axes.
+  const Vector3 rate = motion.acceleration - motion.angular_velocity.cross(motion.velocity);
+  result << far.rotation.transpose() * motion.angular_acceleration, far.rotation.transpose() * rate;
+  return true;
+}
+
+void Joint::integrate(const double* joint_q, const double* delta, double* result) const {
+  for (const JointBlock& block : blocks) {
+    integrate_block(block.kind, joint_q + block.q, delta + block.v, result + block.q);
+  }
+}
+
+void Joint::without_zero(const double* joint_q, double* shifted) const {
+  std::copy(joint_q, joint_q + nq, shifted);
+  for (const JointBlock& block : blocks) {
+    if (is_scalar(block.kind)) shifted[block.q] -= block.described.zero;
+  }
+}
+
+bool Joint::callback_pose(const double* joint_q, Pose& result) const {
+  JointVector q_shifted;
+  without_zero(joint_q, q_shifted.data());
+  std::array<double, 12> out;
+  out.fill(std::nan(""));
+  const void* instance = instance_.get();
+  if (type->calls.pose(1, &instance, q_shifted.data(), out.data()) < 0 || !all_finite(out.data(), 12)) return false;
+  result.rotation = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(out.data());
+  result.position = Vector3(out[9], out[10], out[11]);
+  return true;
+}
+
+bool Joint::callback_subspace(const double* joint_q, Subspace& s) const {
+  if (type->calls.subspace == nullptr) {
+    Pose here;
+    if (!callback_pose(joint_q, here)) return false;
+    const auto twist_to = [&](const double* delta, Vector6& out) {
+      JointVector moved;
+      integrate(joint_q, delta, moved.data());
+      Pose there;
+      if (!callback_pose(moved.data(), there)) return false;
+      const Pose step = relative_pose(here, there);
+      out << rotation_vector<double>(step.rotation), step.position;
+      return true;
+    };
+    return differentiate_along_rates(*this, line_step_, twist_to, s);
+  }
+  JointVector q_shifted;
+  without_zero(joint_q, q_shifted.data());
+  s.setConstant(std::nan(""));
+  const void* instance = instance_.get();
+  return type->calls.subspace(1, &instance, q_shifted.data(), s.data()) >= 0 &&
+         all_finite(s.data(), static_cast<std::size_t>(s.size()));
+}
+
+bool Joint::callback_bias(const double* joint_q, const double* u, const double* w, Vector6& result) const {
+  if (type->calls.bias == nullptr) {
+    const auto momentary = [&](double time, Vector6& out) {
+      std::array<double, max_joint_rates> delta;
+      for (std::uint32_t i = 0; i < nv; ++i) delta[i] = time * u[i];
+      JointVector moved;
+      integrate(joint_q, delta.data(), moved.data());
+      Subspace s(6, nv);
+      if (!callback_subspace(moved.data(), s)) return false;
+      out = s * Eigen::Map<const Eigen::VectorXd>(w, nv);
+      return true;
+    };
+    return differentiate_along_motion(*this, line_step_, u, momentary, result);
+  }
+  JointVector q_shifted;
+  without_zero(joint_q, q_shifted.data());
+  result.setConstant(std::nan(""));
+  const void* instance = instance_.get();
+  return type->calls.bias(1, &instance, q_shifted.data(), u, w, result.data()) >= 0 && all_finite(result.data(), 6);
+}
+
+bool Joint::plugin_residual(const Pose& relative, double* residual, double* jacobian) const {
+  std::array<double, 12> in;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(in.data()) = relative.rotation;
+  std::copy(relative.position.data(), relative.position.data() + 3, in.begin() + 9);
+  const std::size_t rows = type->rows.size();
+  std::fill(residual, residual + rows, std::nan(""));
+  std::fill(jacobian, jacobian + 6 * rows, std::nan(""));
+  const void* instance = instance_.get();
+  return type->calls.implicit(1, &instance, in.data(), residual, jacobian) >= 0 && all_finite(residual, rows) &&
+         all_finite(jacobian, 6 * rows);
+}
+
+bool Joint::plugin_coordinates(const Pose& relative, double* joint_q) const {
+  std::array<double, 12> in;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(in.data()) = relative.rotation;
+  std::copy(relative.position.data(), relative.position.data() + 3, in.begin() + 9);
+  JointVector q_shifted;
+  without_zero(joint_q, q_shifted.data());
+  const void* instance = instance_.get();
+  if (type->calls.coordinates_of(1, &instance, in.data(), q_shifted.data()) < 0) return false;
+  if (!all_finite(q_shifted.data(), nq)) return false;
+  for (const JointBlock& block : blocks) {
+    if (is_scalar(block.kind)) q_shifted[block.q] += block.described.zero;
+    normalise_block(block.kind, q_shifted.data() + block.q);
+  }
+  std::copy(q_shifted.begin(), q_shifted.begin() + nq, joint_q);
+  return true;
+}
+
+}  // namespace koppel

@@ -1,0 +1,131 @@
+#include "mechanism/names.hpp"
+
+#include <span>
+#include <string_view>
+
+namespace koppel {
+namespace {
+
+constexpr std::string_view quaternion_suffixes[] = {".w", ".x", ".y", ".z"};
+constexpr std::string_view vector_suffixes[] = {".x", ".y", ".z"};
+constexpr std::string_view tangent_suffixes[] = {".1", ".2"};
+constexpr std::string_view cardan_suffixes[] = {".alpha", ".beta", ".gamma"};
+constexpr std::string_view no_suffix[] = {""};
+
+std::string coordinate_unit(BlockKind kind) {
+  switch (kind) {
+    case BlockKind::line: return "m";
+    case BlockKind::angle: return "rad";
+    case BlockKind::quaternion:
+    case BlockKind::unit_vector: return "1";
+  }
+  return "";
+}
+
+std::string rate_unit(BlockKind kind) { return kind == BlockKind::line ? "m/s" : "rad/s"; }
+
+std::span<const std::string_view> coordinate_suffixes(BlockKind kind) {
+  switch (kind) {
+    case BlockKind::line:
+    case BlockKind::angle: return no_suffix;
+    case BlockKind::quaternion: return quaternion_suffixes;
+    case BlockKind::unit_vector: return vector_suffixes;
+  }
+  return no_suffix;
+}
+
+std::span<const std::string_view> rate_suffixes(BlockKind kind) {
+  switch (kind) {
+    case BlockKind::line:
+    case BlockKind::angle: return no_suffix;
+    case BlockKind::quaternion: return vector_suffixes;
+    case BlockKind::unit_vector: return tangent_suffixes;
+  }
+  return no_suffix;
+}
+
+std::string block_name(const Mechanism& mechanism, const StateBlock& block) {
+  const Joint& joint = mechanism.joints[block.joint.index()];
+  return joint.name + "." + joint.type->blocks[block.block].name;
+}
+
+struct QuantityColumns {
+  std::string unit;
+  std::span<const std::string_view> suffixes;
+};
+
+QuantityColumns quantity_columns(const Mechanism& mechanism, const RecordDescription& record) {
+  const auto coordinate = [&](std::string_view per_time) {
+    const BlockKind kind = mechanism.joints[record.joint.index()].blocks[record.block].kind;
+    const std::string unit = is_scalar(kind) || per_time.empty() ? coordinate_unit(kind) : "rad";
+    return unit + std::string(per_time);
+  };
+  const auto suffixes = [&](bool rates) {
+    const BlockKind kind = mechanism.joints[record.joint.index()].blocks[record.block].kind;
+    return rates ? rate_suffixes(kind) : coordinate_suffixes(kind);
+  };
+  switch (record.quantity) {
+    case Quantity::value: return {coordinate(""), suffixes(false)};
+    case Quantity::rate: return {coordinate("/s"), suffixes(true)};
+    case Quantity::acceleration: return {coordinate("/s^2"), suffixes(true)};
+    case Quantity::position: return {"m", vector_suffixes};
+    case Quantity::quaternion: return {"1", quaternion_suffixes};
+    case Quantity::cardan: return {"rad", cardan_suffixes};
+    case Quantity::velocity: return {"m/s", vector_suffixes};
+    case Quantity::angular_velocity: return {"rad/s", vector_suffixes};
+    case Quantity::linear_acceleration: return {"m/s^2", vector_suffixes};
+    case Quantity::angular_acceleration: return {"rad/s^2", vector_suffixes};
+  }
+  return {"", no_suffix};
+}
+
+}  // namespace
+
+std::vector<NamedNumber> coordinate_names(const Mechanism& mechanism) {
+  std::vector<NamedNumber> names;
+  for (const StateBlock& block : mechanism.blocks) {
+    for (const std::string_view suffix : coordinate_suffixes(block.kind)) {
+      names.push_back({block_name(mechanism, block) + std::string(suffix), coordinate_unit(block.kind)});
+    }
+  }
+  return names;
+}
+
+std::vector<NamedNumber> rate_names(const Mechanism& mechanism) {
+  std::vector<NamedNumber> names;
+  for (const StateBlock& block : mechanism.blocks) {
+    for (const std::string_view suffix : rate_suffixes(block.kind)) {
+      names.push_back({block_name(mechanism, block) + std::string(suffix), rate_unit(block.kind)});
+    }
+  }
+  return names;
+}
+
+std::string relation_name(const Mechanism& mechanism, const Relation& relation) {
+  if (relation.kind == RelationKind::constraint) return "constraint " + mechanism.constraints[relation.constraint].name;
+  return "loop at joint " + mechanism.joints[relation.joint.index()].name;
+}
+
+std::vector<Row> relation_rows(const Mechanism& mechanism, const Relation& relation) {
+  switch (relation.kind) {
+    case RelationKind::cut_joint: return relation.face->rows();
+    case RelationKind::constraint: return mechanism.constraints[relation.constraint].type->rows;
+    case RelationKind::cut_body:
+      return {{"direction x", "rad"}, {"direction y", "rad"}, {"direction z", "rad"},
+              {"position x", "m"},    {"position y", "m"},    {"position z", "m"}};
+  }
+  return {};
+}
+
+std::vector<RecordColumn> record_columns(const Mechanism& mechanism) {
+  std::vector<RecordColumn> columns;
+  for (std::uint32_t i = 0; i < mechanism.records.size(); ++i) {
+    const QuantityColumns all = quantity_columns(mechanism, mechanism.records[i]);
+    for (std::uint32_t k = 0; k < all.suffixes.size(); ++k) {
+      columns.push_back({mechanism.records[i].name + std::string(all.suffixes[k]), all.unit, i, k});
+    }
+  }
+  return columns;
+}
+
+}  // namespace koppel

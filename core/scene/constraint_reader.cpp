@@ -1,0 +1,66 @@
+// [[constraint]] and [[drive]].
+#include "scene/coordinate_reader.hpp"
+#include "scene/type_values.hpp"
+
+namespace koppel {
+namespace {
+
+/// Each coordinate has one drive, and then its start value says nothing.
+void check_driven(Reading& reading, const Element& element, const TableReader& table, const Node& of,
+                  CoordinateReference coordinate) {
+  const auto& drives = reading.scene.drives;
+  for (std::size_t i = 0; i < element.index; ++i) {
+    const DriveDescription& other = drives[i];
+    if (other.type == nullptr || other.of.joint != coordinate.joint || other.of.block != coordinate.block) continue;
+    table.report().error(Code::driven_twice, of.place, quote(of.text) + " has a drive already",
+                         "remove one of the two; the other is in line " + std::to_string(other.source.line));
+    return;
+  }
+  const Place& start = reading.starts[coordinate.joint.index()][coordinate.block];
+  if (start.line == 0) return;
+  // The joint may stand in another file than the drive.
+  for (const Element& joint : reading.joints) {
+    if (joint.index != coordinate.joint.index()) continue;
+    reading.reporter(*joint.scope, joint.label)
+        .warning(Code::start_ignored, start, "the start value is ignored: a drive sets this coordinate",
+                 "remove it, or the drive of " + quote(of.text));
+  }
+}
+
+}  // namespace
+
+void read_constraint(Reading& reading, const Element& element) {
+  Scope& scope = *element.scope;
+  TableReader table = reading.table(element);
+  table.find("name");
+  ConstraintDescription& constraint = reading.scene.constraints[element.index];
+  constraint.type = find_type<ConstraintType>(reading, scope, table, "", &Registry::constraint);
+  if (constraint.type == nullptr) return;
+  TypeValues given = read_values(reading, scope, table, *constraint.type);
+  constraint.values = std::move(given.values);
+  constraint.frames = std::move(given.frames);
+  constraint.coordinates = std::move(given.coordinates);
+  table.finish();
+}
+
+void read_drive(Reading& reading, const Element& element) {
+  Scope& scope = *element.scope;
+  TableReader table = reading.table(element);
+  table.find("name");
+  DriveDescription& drive = reading.scene.drives[element.index];
+  const Node* of = table.require("of", "name the coordinate that is driven: of = \"joint.coordinate\"");
+  const auto coordinate = of ? read_scalar_coordinate(reading, scope, table.values(), *of, "`of`") : std::nullopt;
+  const auto* type = find_type<FunctionType>(reading, scope, table, "", &Registry::function);
+  if (coordinate) {
+    drive.of = *coordinate;
+    if (drive.name.empty()) drive.name = coordinate_name(reading.scene, *coordinate);
+    check_driven(reading, element, table, *of, *coordinate);
+  }
+  if (type == nullptr) return;
+  // The type marks the drive as complete: check_driven() compares with no other.
+  if (coordinate) drive.type = type;
+  drive.values = read_values(reading, scope, table, *type).values;
+  table.finish();
+}
+
+}  // namespace koppel

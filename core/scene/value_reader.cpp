@@ -1,0 +1,134 @@
+#include "scene/value_reader.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace koppel {
+namespace {
+
+// Shorter than any length that means something, in metres or as a quaternion.
+constexpr double no_length = 1e-12;
+
+/// Unit of length one, without overflow for large components.
+template <typename V>
+std::optional<V> normalised(const V& v) {
+  const double greatest = v.cwiseAbs().maxCoeff();
+  if (!(greatest > no_length)) return std::nullopt;
+  return V((v / greatest).normalized());
+}
+
+bool is_base_unit(std::string_view unit) { return unit == "m" || unit == "rad" || unit == "s" || unit == "kg"; }
+
+}  // namespace
+
+std::string count_text(std::size_t count_min, std::size_t count_max) {
+  if (count_min == count_max) return std::to_string(count_min);
+  if (count_max == unbounded) return "at least " + std::to_string(count_min);
+  return std::to_string(count_min) + " to " + std::to_string(count_max);
+}
+
+std::string number_text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.6g", value);
+  return buffer;
+}
+
+void ValueReader::wrong_kind(const Node& node, std::string_view what, std::string_view expected) const {
+  report_.error(Code::wrong_kind, node.place,
+                std::string(what) + " takes " + std::string(expected) + ", not " + std::string(kind_name(node.kind)));
+}
+
+std::optional<double> ValueReader::number(const Node& node, std::string_view what, std::string_view unit) const {
+  if (node.is_string()) {
+    const std::string_view own = quantity_unit(node.text);
+    if (is_base_unit(unit) && !own.empty() && own != unit) {
+      report_.error(Code::wrong_kind, node.place,
+                    std::string(what) + " is measured in " + std::string(unit) + ", not in " + std::string(own),
+                    "write a quantity in " + std::string(unit) + ", or a plain number");
+      return std::nullopt;
+    }
+    return parameters_->evaluate(node, report_);
+  }
+  if (!node.is_number()) {
+    wrong_kind(node, what, "a number");
+    return std::nullopt;
+  }
+  if (!std::isfinite(node.number)) {
+    report_.error(Code::not_finite, node.place, std::string(what) + " must be finite", "write a finite number");
+    return std::nullopt;
+  }
+  return node.number;
+}
+
+std::optional<double> ValueReader::positive(const Node& node, std::string_view what, std::string_view unit) const {
+  const auto value = number(node, what, unit);
+  if (!value || *value > 0.0) return value;
+  report_.error(Code::out_of_range, node.place,
+                std::string(what) + " must be greater than 0, and is " + number_text(*value));
+  return std::nullopt;
+}
+
+bool ValueReader::is_whole(double value, const Node& node, std::string_view what) const {
+  if (value == std::floor(value)) return true;
+  report_.error(Code::wrong_kind, node.place, std::string(what) + " takes whole numbers, not " + number_text(value));
+  return false;
+}
+
+bool ValueReader::is_list(const Node& node, std::string_view what, std::size_t count_min, std::size_t count_max) const {
+  if (!node.is_list()) {
+    wrong_kind(node, what, "a list of " + count_text(count_min, count_max));
+    return false;
+  }
+  if (node.items.size() >= count_min && node.items.size() <= count_max) return true;
+  report_.error(Code::wrong_count, node.place,
+                std::string(what) + " takes " + count_text(count_min, count_max) + " entries, not " +
+                    std::to_string(node.items.size()));
+  return false;
+}
+
+std::optional<std::vector<double>> ValueReader::numbers(const Node& node, std::string_view what, std::size_t count_min,
+                                                        std::size_t count_max, std::string_view unit) const {
+  if (!is_list(node, what, count_min, count_max)) return std::nullopt;
+  std::vector<double> values;
+  for (const Node& item : node.items) {
+    if (const auto value = number(item, what, unit)) values.push_back(*value);
+  }
+  if (values.size() != node.items.size()) return std::nullopt;
+  return values;
+}
+
+std::optional<Vector3> ValueReader::vector(const Node& node, std::string_view what, std::string_view unit) const {
+  const auto values = numbers(node, what, 3, 3, unit);
+  if (!values) return std::nullopt;
+  return Vector3((*values)[0], (*values)[1], (*values)[2]);
+}
+
+std::optional<Vector3> ValueReader::direction(const Node& node, std::string_view what) const {
+  const auto given = vector(node, what);
+  if (!given) return std::nullopt;
+  const auto unit = normalised(*given);
+  if (!unit) {
+    report_.error(Code::zero_direction, node.place, std::string(what) + " has no length, so it has no direction",
+                  "write a vector of any length but zero");
+  }
+  return unit;
+}
+
+std::optional<Vector4> ValueReader::quaternion(const Node& node, std::string_view what) const {
+  const auto values = numbers(node, what, 4, 4);
+  if (!values) return std::nullopt;
+  const auto unit = normalised(Vector4((*values)[0], (*values)[1], (*values)[2], (*values)[3]));
+  if (!unit) {
+    report_.error(Code::zero_direction, node.place, std::string(what) + " has no length, so it is no rotation",
+                  "write [w, x, y, z]; [1, 0, 0, 0] turns nothing");
+  }
+  return unit;
+}
+
+std::optional<std::string> ValueReader::text(const Node& node, std::string_view what) const {
+  if (node.is_string()) return node.text;
+  wrong_kind(node, what, "a string");
+  return std::nullopt;
+}
+
+}  // namespace koppel

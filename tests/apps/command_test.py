@@ -1,0 +1,168 @@
+"""The koppel command: exit codes, what goes where, and the keys of --json."""
+
+import math
+import unittest
+
+from program import FINE, FOURBAR, LOCKED, NOT_CLOSED, SCENE, SYSTEM, USAGE, ProgramTest, log_channels, read_table
+
+
+class Usage(ProgramTest):
+    def test_help_teaches_by_examples_and_names_the_exit_codes(self):
+        text = self.expect(FINE, "koppel", "--help").stdout
+        for word in ("check", "explain", "run", "Examples:", "Exit codes:"):
+            self.assertIn(word, text)
+        for command in ("check", "explain", "run"):
+            self.assertIn("Examples:", self.expect(FINE, "koppel", command, "--help").stdout)
+
+    def test_version_is_printed(self):
+        self.assertRegex(self.expect(FINE, "koppel", "--version").stdout, r"^koppel \d+\.\d+\.\d+\n$")
+
+    def test_wrong_usage_is_told_apart_from_wrong_scenes(self):
+        scene = self.write("scene.toml", FOURBAR)
+        for arguments in ([], ["fly"], ["check"], ["run", scene, "--steps", "0"], ["run", scene, "--duration", "-1"],
+                          ["run", scene, "--lcm", "memq://", "--log", "x.lcm"],
+                          ["run", scene, "--json", "--csv", "-"]):
+            with self.subTest(arguments=arguments):
+                result = self.expect(USAGE, "koppel", *arguments)
+                self.assertEqual(result.stdout, "")
+                self.assertNotEqual(result.stderr, "")
+
+
+class Check(ProgramTest):
+    def test_a_good_scene_shows_its_freedoms(self):
+        result = self.expect(FINE, "koppel", "check", self.write("scene.toml", FOURBAR))
+        self.assertIn("mobility", result.stdout)
+        self.assertEqual(result.stderr, "")
+
+    def test_json_counts_freedoms_loops_and_redundant_equations(self):
+        document = self.json(FINE, "check", self.write("scene.toml", FOURBAR))
+        self.assertEqual(document["mobility"], {"count": -2, "rank": 1})
+        self.assertEqual(document["loops"], 1)
+        self.assertEqual(document["diagnostics"], [])
+        self.assertIs(document["closed"], True)
+        self.assertLess(document["residual"], 1e-13)
+
+    def test_all_faults_are_found_at_once_with_place_and_remedy(self):
+        text = FOURBAR.replace('"revolute"', '"revolut"', 1)
+        text = text.replace("slope", "slop").replace('"rocker.angle"', '"roker.angle"')
+        scene = self.write("bad.toml", text)
+        findings = [f for f in self.json(SCENE, "check", scene)["diagnostics"] if f["severity"] == "error"]
+        self.assertGreaterEqual(len(findings), 3)
+        self.assertEqual({"code", "severity", "file", "line", "column", "message", "advice", "element"},
+                         set(findings[0]))
+        lines = text.splitlines()
+        for finding, word in zip(sorted(findings, key=lambda f: f["line"]), ("revolut", "slop", "roker.angle")):
+            self.assertIn(word, lines[finding["line"] - 1])
+        printed = self.expect(SCENE, "koppel", "check", scene).stderr
+        self.assertIn("bad.toml:", printed)
+        self.assertIn("^", printed)
+
+    def test_a_scene_that_is_not_toml_is_a_faulty_scene(self):
+        self.expect(SCENE, "koppel", "check", self.write("bad.toml", "schema = = 1\n"))
+
+    def test_a_missing_file_is_no_faulty_scene(self):
+        self.expect(SYSTEM, "koppel", "check", self.folder / "absent.toml")
+        document = self.json(SYSTEM, "check", self.folder / "absent.toml")
+        self.assertEqual(document["diagnostics"][0]["code"], "E0101")
+        self.assertIsNone(document["mobility"])
+
+    def test_a_mechanism_out_of_reach_does_not_close(self):
+        far = FOURBAR.replace("at = [0.35, 0, 0]", "inlet = \"rocker\"\noutlet = { on = \"ground\", at = [9, 0, 0] }")
+        far = far.replace('between = ["rocker", "ground"]\n', "")
+        document = self.json(NOT_CLOSED, "check", self.write("far.toml", far))
+        self.assertIs(document["closed"], False)
+        self.assertTrue(document["diagnostics"])
+
+
+class Explain(ProgramTest):
+    def test_a_code_is_explained(self):
+        self.assertIn("cannot be read", self.expect(FINE, "koppel", "explain", "E0101").stdout)
+
+    def test_an_unknown_code_is_wrong_usage(self):
+        self.expect(USAGE, "koppel", "explain", "E9999")
+
+    def test_a_scene_is_explained(self):
+        self.assertIn("crank", self.expect(FINE, "koppel", "explain", self.write("scene.toml", FOURBAR)).stdout)
+
+
+class Run(ProgramTest):
+    def test_json_tells_accuracy_and_time_of_steps(self):
+        document = self.json(FINE, "run", self.write("scene.toml", FOURBAR), "--steps", "25")
+        self.assertEqual(document["steps"], 25)
+        self.assertLess(document["max_residual"], 1e-13)
+        self.assertEqual(document["mobility"], {"count": -2, "rank": 1})
+        self.assertEqual(document["jacobian_rank"], 3)
+        self.assertGreater(document["seconds_per_step"], 0.0)
+        self.assertGreaterEqual(document["seconds_per_step_error"], 0.0)
+        self.assertIs(document["remarks"]["redundant"], True)
+
+    def test_the_summary_goes_to_standard_output_unless_quiet(self):
+        scene = self.write("scene.toml", FOURBAR)
+        self.assertIn("40 of 40 steps", self.expect(FINE, "koppel", "run", scene).stdout)
+        self.assertEqual(self.expect(FINE, "koppel", "run", scene, "--quiet").stdout, "")
+
+    def test_a_run_that_stops_says_where(self):
+        scene = self.write("locked.toml", LOCKED)
+        result = self.expect(NOT_CLOSED, "koppel", "run", scene)
+        self.assertRegex(result.stderr, r"step \d+, t = ")
+        document = self.json(NOT_CLOSED, "run", scene)
+        self.assertIs(document["closed"], False)
+        self.assertLess(document["steps"], 40)
+        self.assertRegex(document["error"]["code"], r"^E07\d\d$")
+
+    def test_the_library_logs_only_when_asked(self):
+        scene = self.write("scene.toml", FOURBAR)
+        self.assertEqual(self.expect(FINE, "koppel", "run", scene).stderr, "")
+        self.expect(FINE, "koppel", "run", scene, "--verbose")
+
+
+class Table(ProgramTest):
+    def test_a_table_has_time_records_and_residual(self):
+        scene = self.write("scene.toml", FOURBAR)
+        self.expect(FINE, "koppel", "run", scene, "--csv", "run.csv")
+        table = read_table(self.folder / "run.csv")
+        self.assertEqual(list(table), ["time", "crank.angle", "rocker.angle", "residual"])
+        self.assertEqual(len(table["time"]), 41)
+        self.assertEqual(table["time"][-1], 1.0)
+        # The drive is a line: its value is exact but for the rounding of 360 deg and of the product.
+        for time, angle in zip(table["time"], table["crank.angle"]):
+            self.assertLessEqual(abs(angle - 2 * math.pi * time), 4 * math.ulp(2 * math.pi))
+
+    def test_a_turn_ends_where_it_began(self):
+        scene = self.write("scene.toml", FOURBAR)
+        self.expect(FINE, "koppel", "run", scene, "--csv", "run.csv")
+        rocker = read_table(self.folder / "run.csv")["rocker.angle"]
+        self.assertLess(abs(rocker[-1] - rocker[0]), 1e-13)
+        self.assertGreater(max(rocker) - min(rocker), 0.5)
+
+    def test_a_table_on_standard_output_stands_alone(self):
+        result = self.expect(FINE, "koppel", "run", self.write("scene.toml", FOURBAR), "--csv", "-")
+        lines = result.stdout.splitlines()
+        self.assertEqual(lines[0], "time,crank.angle,rocker.angle,residual")
+        self.assertEqual(len(lines), 42)
+        self.assertIn("40 of 40 steps", result.stderr)
+
+    def test_a_table_that_cannot_be_written_is_reported(self):
+        self.expect(SYSTEM, "koppel", "run", self.write("scene.toml", FOURBAR), "--csv", "absent/run.csv")
+
+
+class Log(ProgramTest):
+    def test_a_log_holds_every_state(self):
+        scene = self.write("scene.toml", FOURBAR)
+        document = self.json(FINE, "run", scene, "--log", "run.lcm")
+        self.assertEqual(document["stream"], {"published": 41, "sent": 41, "dropped": 0})
+        channels = log_channels(self.folder / "run.lcm")
+        self.assertEqual(channels["KOPPEL_FOURBAR_STATE"], 41)
+        self.assertGreaterEqual(channels["KOPPEL_FOURBAR_MODEL"], 1)
+
+    def test_a_name_changes_the_channels(self):
+        scene = self.write("scene.toml", FOURBAR)
+        self.expect(FINE, "koppel", "run", scene, "--log", "run.lcm", "--name", "LEFT")
+        self.assertEqual(log_channels(self.folder / "run.lcm")["KOPPEL_LEFT_STATE"], 41)
+
+    def test_a_log_that_cannot_be_written_is_reported(self):
+        self.expect(SYSTEM, "koppel", "run", self.write("scene.toml", FOURBAR), "--log", "absent/run.lcm")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,38 @@
+"""What the README shows is tried."""
+
+import pathlib
+import re
+import unittest
+
+from program import FINE, ProgramTest
+
+ROOT = pathlib.Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text()
+
+
+class Scene(ProgramTest):
+    def test_the_first_scene_has_the_mobility_that_is_told(self):
+        scene = self.write("fourbar.toml", re.search(r"```toml\n(schema.*?)```", README, re.DOTALL).group(1))
+        self.assertEqual(self.json(FINE, "check", scene)["mobility"], {"count": -2, "rank": 1})
+        self.assertLess(self.json(FINE, "run", scene)["max_residual"], 1e-13)
+
+
+class Commands(ProgramTest):
+    def test_every_option_shown_exists(self):
+        shown = set(re.findall(r"koppel run [^\n#|`]*", README))
+        self.assertTrue(shown)
+        known = self.expect(FINE, "koppel", "run", "--help").stdout
+        for line in shown:
+            for option in re.findall(r"--[a-z]+", line):
+                self.assertIn(option, known)
+
+
+class Links(unittest.TestCase):
+    def test_every_link_leads_to_a_file(self):
+        links = [link for link in re.findall(r"\]\(([^)]+)\)", README) if "://" not in link]
+        self.assertTrue(links)
+        self.assertEqual([link for link in links if not (ROOT / link).exists()], [])
+
+
+if __name__ == "__main__":
+    unittest.main()

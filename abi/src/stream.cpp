@@ -105,6 +105,7 @@ koppel_status koppel_stream_close(koppel_stream* stream, koppel_stream_statistic
       out.published = closed->published;
       out.sent = closed->sent;
       out.dropped = closed->dropped;
+      out.failed = closed->failed;
       koppel::write_struct(out, statistics);
     }
     return KOPPEL_OK;

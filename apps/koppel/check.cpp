@@ -74,15 +74,13 @@ void add_closure(nlohmann::ordered_json& document, const Model& model, const Clo
   const koppel_sizes sizes = model.sizes();
   document["scene"] = model.name(KOPPEL_KIND_SCENE, 0);
   document["closed"] = closure.closed();
-  document["mobility"] = json_of(closure.analysis);
   document["loops"] = sizes.loops;
   document["bodies"] = sizes.bodies;
   document["joints"] = sizes.joints;
   document["constraints"] = sizes.constraints;
   document["inputs"] = sizes.inputs;
-  document["equations"] = sizes.equations;
   document["unknowns"] = sizes.unknowns;
-  document["jacobian_rank"] = closure.analysis.rank;
+  add_counts(document, sizes, closure.analysis);
   if (closure.closed()) {
     document["residual"] = closure.report.residual;
     document["coordinate_error"] = closure.report.coordinate_error;

@@ -2,6 +2,7 @@
 // in `outcome`.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
@@ -29,8 +30,13 @@ inline nlohmann::ordered_json json_of(const koppel_error& error) {
           {"column", error.column}, {"message", error.message}, {"advice", error.advice}, {"element", error.element}};
 }
 
-inline nlohmann::ordered_json json_of(const koppel_analysis& analysis) {
-  return {{"count", analysis.mobility_count}, {"rank", analysis.mobility_rank}};
+/// Mobility and ranks as they stand in --json. jacobian_rank is that of the loop equations in the rates of all joints,
+/// so that it does not depend on where the loops are cut; equations and rank are those of the closure as it is solved.
+inline void add_counts(nlohmann::ordered_json& document, const koppel_sizes& sizes, const koppel_analysis& analysis) {
+  document["mobility"] = {{"count", analysis.mobility_count}, {"rank", analysis.mobility_rank}};
+  document["jacobian_rank"] = static_cast<std::int64_t>(sizes.rates) - analysis.mobility_rank;
+  document["equations"] = analysis.equations;
+  document["rank"] = analysis.rank;
 }
 
 /// Prints a document on standard output. Texts from files that are not UTF-8 do not stop it.

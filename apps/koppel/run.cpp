@@ -73,8 +73,7 @@ class Run {
     document["scene"] = model_.name(KOPPEL_KIND_SCENE, 0);
     document["closed"] = outcome_ != Exit::not_closed;
     document["duration"] = duration_;
-    document["mobility"] = json_of(analysis_);
-    document["jacobian_rank"] = analysis_.rank;
+    add_counts(document, model_.sizes(), analysis_);
     summary_.write(document);
     if (streamed_) {
       document["stream"] = {

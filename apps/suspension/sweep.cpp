@@ -23,7 +23,7 @@ class Sweep {
       return std::move(result_);
     }
     const int half = std::max(1, static_cast<int>(std::lround(options_.travel / options_.spacing)));
-    for (int i = 0; i >= -half; --i) {
+    for (int i = 0; i > -half; --i) {
       if (!move(i, -speed)) return std::move(result_);
     }
     for (int i = -half; i <= half; ++i) {

@@ -103,14 +103,14 @@ class Closing {
         work_.delta += (h * h * h / 6.0 / state_.history.step) * (state_.a - state_.history.acceleration);
       }
       // A wild extrapolation is worse than none.
-      if (greatest(work_.delta) <= largest_move) integrate(mechanism_, state_.q, work_.delta, work_.q);
+      if (greatest_unknown(work_.delta) <= largest_move) integrate(mechanism_, state_.q, work_.delta, work_.q);
     }
     work_.q_start = work_.q;
     set_inputs(1.0);
   }
 
   /// Largest component of a change of coordinates, in radians' size; of unknowns only.
-  double greatest(const Eigen::VectorXd& delta) const {
+  double greatest_unknown(const Eigen::VectorXd& delta) const {
     double result = 0.0;
     for (std::uint32_t i = 0; i < mechanism_.unknowns; ++i) {
       const std::uint32_t rate = mechanism_.rate_of_column[i];
@@ -121,7 +121,7 @@ class Closing {
 
   bool moved_little() {
     difference(mechanism_, work_.q_start, work_.q, work_.delta);
-    return greatest(work_.delta) <= largest_move;
+    return greatest_unknown(work_.delta) <= largest_move;
   }
 
   /// Leads the inputs from a closed position to their targets, in steps that halve when they are not believed.
@@ -208,22 +208,31 @@ void remember(State& state) {
   state.history.time = state.time;
 }
 
-/// x of the unknowns from J_u x = rhs, and whether the equations can be met.
-bool solve_rates(Work& work, Eigen::VectorXd& rates) {
+/// The greatest of a set of rates or accelerations, in radians' size.
+double greatest(const Mechanism& mechanism, const Eigen::VectorXd& rates) {
+  double result = 0.0;
+  for (Eigen::Index i = 0; i < rates.size(); ++i) {
+    result = std::max(result, std::abs(rates[i]) / mechanism.rate_scale[static_cast<std::size_t>(i)]);
+  }
+  return result;
+}
+
+/// x of the unknowns from J_u x = rhs. False: the equations cannot be met, not even to `allowed` times the size of what is
+/// moving (the terms that rhs is a sum of; rhs itself may be what rounding left of them).
+bool solve_rates(Work& work, double moving, Eigen::VectorXd& rates) {
   const Mechanism& mechanism = *work.mechanism;
   work.rhs_copy = work.rhs;
-  auto unknown_step = work.step.head(mechanism.unknowns);
   work.factorisation.solve(work.rhs, work.step);
   for (std::uint32_t i = 0; i < mechanism.unknowns; ++i) {
     const std::uint32_t rate = mechanism.rate_of_column[i];
     rates[rate] = mechanism.rate_scale[rate] * work.step[i];
   }
   if (mechanism.rows == 0) return true;
-  const double asked = work.rhs_copy.lpNorm<Eigen::Infinity>();
-  work.rhs_copy.noalias() -= work.equations.jacobian.leftCols(mechanism.unknowns) * unknown_step;
-  // What an equation may be off by: rounding of its terms, over many orders of magnitude below anything that moves.
   constexpr double allowed = 1e-9;
-  return work.rhs_copy.lpNorm<Eigen::Infinity>() <= allowed * asked;
+  const double asked = work.rhs_copy.lpNorm<Eigen::Infinity>();
+  const double lever = work.equations.jacobian.lpNorm<Eigen::Infinity>();
+  work.rhs_copy.noalias() -= work.equations.jacobian.leftCols(mechanism.unknowns) * work.step.head(mechanism.unknowns);
+  return work.rhs_copy.lpNorm<Eigen::Infinity>() <= allowed * std::max(asked, lever * moving);
 }
 
 /// rhs -= J_d times the driven rates (or accelerations) that stand in `rates`.
@@ -277,7 +286,7 @@ koppel_status velocities(Work& work, State& state) {
   if (!work.equations.time_rate(work.rhs)) return KOPPEL_PLUGIN;
   work.rhs = -work.rhs;
   subtract_driven(work, v);
-  if (!solve_rates(work, v)) return KOPPEL_SINGULAR;
+  if (!solve_rates(work, greatest(mechanism, v), v)) return KOPPEL_SINGULAR;
   if (!work.equations.motion(state.q, v, work.rest) || !work.equations.cut_rates(state.q, v)) return KOPPEL_PLUGIN;
   state.v = v;
   state.stage = Stage::velocities;
@@ -296,9 +305,10 @@ koppel_status accelerations(Work& work, State& state) {
   for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
     a[mechanism.inputs[i].v] = state.input_acceleration[static_cast<Eigen::Index>(i)];
   }
+  const double speed = greatest(mechanism, state.v);
   work.rhs = -work.rhs;
   subtract_driven(work, a);
-  if (!solve_rates(work, a)) return KOPPEL_SINGULAR;
+  if (!solve_rates(work, greatest(mechanism, a) + speed * speed, a)) return KOPPEL_SINGULAR;
   if (!work.equations.motion(state.q, state.v, a) || !work.equations.cut_accelerations(state.q, state.v, a)) {
     return KOPPEL_PLUGIN;
   }

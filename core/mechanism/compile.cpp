@@ -25,7 +25,6 @@ class Compiler {
     build_loops();
     build_constraint_relations();
     number_rows();
-    if (m().records.empty()) record_all_coordinates();
     m().record_columns = record_columns(m());
     return std::shared_ptr<const Mechanism>(std::move(mechanism_));
   }
@@ -257,17 +256,6 @@ class Compiler {
     m().mobility_count = static_cast<std::int32_t>(m().nv) - 6 * static_cast<std::int32_t>(m().loops);
     for (std::size_t i = m().loops; i < m().relations.size(); ++i) {
       m().mobility_count -= static_cast<std::int32_t>(m().relations[i].rows);
-    }
-  }
-
-  void record_all_coordinates() {
-    for (const StateBlock& block : m().blocks) {
-      const Joint& joint = m().joints[block.joint.index()];
-      RecordDescription record;
-      record.name = joint.name + "." + joint.type->blocks[block.block].name;
-      record.joint = block.joint;
-      record.block = block.block;
-      m().records.push_back(std::move(record));
     }
   }
 

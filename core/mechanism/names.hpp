@@ -16,7 +16,7 @@ std::string relation_name(const Mechanism& mechanism, const Relation& relation);
 /// The equations of a relation.
 std::vector<Row> relation_rows(const Mechanism& mechanism, const Relation& relation);
 
-/// Columns of the recorded quantities; without any [[record]] all coordinates.
+/// Columns of the recorded quantities.
 std::vector<RecordColumn> record_columns(const Mechanism& mechanism);
 
 }  // namespace koppel

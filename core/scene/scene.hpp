@@ -116,7 +116,7 @@ struct Scene {
   std::vector<JointDescription> joints;
   std::vector<ConstraintDescription> constraints;
   std::vector<DriveDescription> drives;
-  std::vector<RecordDescription> records;
+  std::vector<RecordDescription> records;  ///< all coordinates, if the scene has no [[record]]
   std::uint64_t hash = 0;  ///< of the content, includes and parameters applied; not of comments or layout
 };
 

@@ -51,8 +51,9 @@ class Check(ProgramTest):
         self.assertEqual({"code", "severity", "file", "line", "column", "message", "advice", "element"},
                          set(findings[0]))
         lines = text.splitlines()
-        for finding, word in zip(sorted(findings, key=lambda f: f["line"]), ("revolut", "slop", "roker.angle")):
-            self.assertIn(word, lines[finding["line"] - 1])
+        marked = " ".join(lines[finding["line"] - 1] for finding in findings)
+        for word in ('"revolut"', "slop =", '"roker.angle"'):
+            self.assertIn(word, marked)
         printed = self.expect(SCENE, "koppel", "check", scene).stderr
         self.assertIn("bad.toml:", printed)
         self.assertIn("^", printed)

@@ -132,7 +132,7 @@ class Picture(ProgramTest):
 class Log(ProgramTest):
     def test_the_log_holds_the_way_down_and_all_rows(self):
         self.expect(FINE, "suspension", MULTILINK, "--log", "run.lcm")
-        self.assertEqual(log_channels(self.folder / "run.lcm")["KOPPEL_MULTILINK_STATE"], 9 + 17)
+        self.assertEqual(log_channels(self.folder / "run.lcm")["KOPPEL_MULTILINK_STATE"], 8 + 17)
 
 
 class Usage(ProgramTest):

@@ -308,6 +308,7 @@ typedef struct koppel_stream_statistics {
   uint64_t published; /* states taken from the host */
   uint64_t sent;      /* states that went out */
   uint64_t dropped;   /* states overtaken by newer ones (network only; a file takes every one) */
+  uint64_t failed;    /* states that LCM could not send */
 } koppel_stream_statistics;
 
 KOPPEL_EXPORT koppel_status koppel_stream_open(const koppel_mechanism* mechanism, const koppel_stream_options* options,

@@ -69,9 +69,9 @@ koppel_status fail_without_memory(koppel_error* out, koppel_status status, const
 }
 
 koppel_status write_text(std::string_view text, char* buffer, std::size_t size, std::size_t* needed) {
+  if (buffer == nullptr ? needed == nullptr : size == 0) return KOPPEL_INVALID_ARGUMENT;
   if (needed != nullptr) *needed = text.size() + 1;
-  if (buffer == nullptr) return needed == nullptr ? KOPPEL_INVALID_ARGUMENT : KOPPEL_OK;
-  if (size == 0) return KOPPEL_INVALID_ARGUMENT;
+  if (buffer == nullptr) return KOPPEL_OK;
   const std::size_t n = std::min(text.size(), size - 1);
   std::memcpy(buffer, text.data(), n);
   buffer[n] = '\0';

@@ -50,7 +50,9 @@ std::string_view unit_of(const Mechanism& m, std::int32_t kind, std::size_t i) {
 }
 
 bool has(const koppel_mechanism* mechanism, std::int32_t kind, std::size_t index) {
-  return mechanism != nullptr && static_cast<std::ptrdiff_t>(index) < count_of(*mechanism->mechanism, kind);
+  if (mechanism == nullptr) return false;
+  const std::ptrdiff_t count = count_of(*mechanism->mechanism, kind);
+  return count >= 0 && index < static_cast<std::size_t>(count);
 }
 
 std::uint32_t u32(std::size_t n) { return static_cast<std::uint32_t>(n); }

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "boundary.hpp"
 #include "closure/analysis.hpp"
@@ -57,8 +58,12 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, co
   return koppel::fail(status, e, error);
 }
 
-koppel::CloseOptions options_of(const koppel_close_options* given) {
-  const koppel_close_options o = koppel::read_struct(given);
+bool acceptable(const koppel_close_options& o) {
+  return o.method >= KOPPEL_METHOD_AUTO && o.method <= KOPPEL_METHOD_CERES && std::isfinite(o.tolerance) &&
+         o.tolerance >= 0.0 && o.max_iterations <= std::numeric_limits<std::int32_t>::max();
+}
+
+koppel::CloseOptions options_of(const koppel_close_options& o) {
   koppel::CloseOptions options;
   options.method = o.method == KOPPEL_METHOD_NEWTON  ? koppel::Method::newton
                    : o.method == KOPPEL_METHOD_CERES ? koppel::Method::ceres
@@ -115,8 +120,10 @@ koppel_status koppel_close(koppel_state* state, koppel_work* work, const koppel_
                            koppel_report* report, koppel_error* error) {
   return koppel::guarded(error, [&]() -> koppel_status {
     if (!fit(state, work)) return misfit(error);
+    const koppel_close_options given = koppel::read_struct(options);
+    if (!acceptable(given)) return koppel::invalid_argument("the options name no method, tolerance or limit", error);
     koppel::Report result;
-    const koppel_status status = koppel::close(work->work, state->state, options_of(options), result);
+    const koppel_status status = koppel::close(work->work, state->state, options_of(given), result);
     write_report(*state->mechanism, result, report);
     return status >= 0 ? status : explain_failure(status, work->work, state->state, error);
   });

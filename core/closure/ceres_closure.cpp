@@ -43,7 +43,8 @@ class BlockManifold final : public ceres::Manifold {
     return true;
   }
 
-  /// The columns of the tangent map are orthogonal and of equal length: its pseudo-inverse is a multiple of its transpose.
+  /// The columns of the tangent map are orthogonal and of equal length: its pseudo-inverse is a multiple of its
+  /// transpose.
   static double pseudo_inverse_factor(BlockKind kind) { return kind == BlockKind::quaternion ? 4.0 : 1.0; }
 
  private:
@@ -196,8 +197,8 @@ CeresClosure::Result CeresClosure::solve(double time, std::uint32_t max_iteratio
   if (!work.equations.evaluate(work.q, time)) return {true, 0};
   if (impl_->problem.NumResidualBlocks() > 0) {
     ceres::Solver::Options options;
-    options.linear_solver_type = work.mechanism->columns <= largest_dense_problem ? ceres::DENSE_QR
-                                                                                  : ceres::SPARSE_NORMAL_CHOLESKY;
+    options.linear_solver_type =
+        work.mechanism->columns <= largest_dense_problem ? ceres::DENSE_QR : ceres::SPARSE_NORMAL_CHOLESKY;
     options.max_num_iterations = static_cast<int>(max_iterations);
     // Stop at rounding, not at a relative change: the cost of a closed loop is zero.
     options.function_tolerance = 1e-16;

@@ -1,6 +1,6 @@
 // Closure as a Ceres least-squares problem: one residual block for each loop and constraint with analytic Jacobians,
-// manifolds for quaternions and unit vectors, driven coordinates left out of the parameters. Assembles from far away and
-// copes with redundant and singular cases; the verdict on its result is not Ceres' but the residual's.
+// manifolds for quaternions and unit vectors, driven coordinates left out of the parameters. Assembles from far away
+// and copes with redundant and singular cases; the verdict on its result is not Ceres' but the residual's.
 #pragma once
 
 #include <cstdint>

@@ -19,13 +19,13 @@ struct CloseOptions {
 };
 
 /// Closes the loops with the inputs held at the state's values. A state that was closed before is followed from there,
-/// in smaller steps of the inputs if need be; another is assembled: by Newton if it is near, by Ceres from further away,
-/// last by letting the inputs go, closing, and leading them back.
-/// Status: as koppel_status; KOPPEL_NOT_CLOSED, KOPPEL_RETRY and KOPPEL_PLUGIN leave the state untouched.
+/// in smaller steps of the inputs if need be; another is assembled: by Newton if it is near, by Ceres from further
+/// away, last by letting the inputs go, closing, and leading them back. Status: as koppel_status; KOPPEL_NOT_CLOSED,
+/// KOPPEL_RETRY and KOPPEL_PLUGIN leave the state untouched.
 koppel_status close(Work& work, State& state, const CloseOptions& options, Report& report);
 
-/// Rates of a closed state from those of its inputs (K-II-3.5.1b); free motions get the least norm. KOPPEL_SINGULAR: the
-/// inputs' rates are impossible here. KOPPEL_INVALID_ARGUMENT: the state is not closed.
+/// Rates of a closed state from those of its inputs (K-II-3.5.1b); free motions get the least norm. KOPPEL_SINGULAR:
+/// the inputs' rates are impossible here. KOPPEL_INVALID_ARGUMENT: the state is not closed.
 koppel_status velocities(Work& work, State& state);
 
 /// Accelerations, likewise (K-II-3.6.1); the state must have velocities.

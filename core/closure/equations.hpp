@@ -1,5 +1,6 @@
-// The closure equations of a mechanism: residuals, Jacobian, and the terms that velocities and accelerations add. Rows in
-// metres are divided by the mechanism's length, rates of lengths multiplied by it: everything has the size of an angle.
+// The closure equations of a mechanism: residuals, Jacobian, and the terms that velocities and accelerations add. Rows
+// in metres are divided by the mechanism's length, rates of lengths multiplied by it: everything has the size of an
+// angle.
 #pragma once
 
 #include <array>

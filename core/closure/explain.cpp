@@ -43,9 +43,7 @@ void explain_relation(const Mechanism& mechanism, const Relation& relation, std:
       out << "cut at body " << mechanism.bodies[mechanism.joints[relation.joint.index()].outlet.body.index()].name
           << ", because the coordinates of the joint are needed or it has no implicit face\n";
       break;
-    case RelationKind::constraint:
-      out << mechanism.constraints[relation.constraint].type->name << '\n';
-      break;
+    case RelationKind::constraint: out << mechanism.constraints[relation.constraint].type->name << '\n'; break;
   }
   out << "    " << plural(relation.rows, "equation", "equations");
   std::string separator = ": ";
@@ -73,7 +71,8 @@ std::string explain(const Mechanism& mechanism) {
       << plural(mechanism.loops, "independent loop", "independent loops") << ", "
       << plural(mechanism.constraints.size(), "constraint", "constraints") << '\n'
       << "Characteristic length " << mechanism.length << " m: residuals in metres are divided by it\n"
-      << "Mobility by count " << mechanism.mobility_count << " (6 for each body, minus what joints and constraints take)\n"
+      << "Mobility by count " << mechanism.mobility_count
+      << " (6 for each body, minus what joints and constraints take)\n"
       << "Equations " << mechanism.rows << ", unknown rates " << mechanism.unknowns << ", inputs "
       << mechanism.inputs.size() << "\n\n";
   explain_tree(mechanism, out);

@@ -7,8 +7,8 @@
 
 namespace koppel {
 
-/// A page of text: size, tree, how each loop is cut, equations and unknowns, inputs, what is formed numerically, and what
-/// was left out because nothing asks for it.
+/// A page of text: size, tree, how each loop is cut, equations and unknowns, inputs, what is formed numerically, and
+/// what was left out because nothing asks for it.
 std::string explain(const Mechanism& mechanism);
 
 }  // namespace koppel

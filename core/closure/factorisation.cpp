@@ -52,8 +52,11 @@ void Factorisation::solve(Eigen::VectorXd& b, Eigen::VectorXd& x) {
   }
   // T y = b with T' P2 = Q2 R2: R2' z = P2' b, y = Q2 z.
   for (Eigen::Index i = 0; i < rank_; ++i) high_[i] = b[right_.colsPermutation().indices()[i]];
-  right_.matrixQR().topLeftCorner(rank_, rank_).triangularView<Eigen::Upper>().transpose().solveInPlace(
-      high_.head(rank_));
+  right_.matrixQR()
+      .topLeftCorner(rank_, rank_)
+      .triangularView<Eigen::Upper>()
+      .transpose()
+      .solveInPlace(high_.head(rank_));
   const Eigen::Index n = left_.cols();
   high_.segment(rank_, n - rank_).setZero();
   apply_q(right_, false, high_);

@@ -7,8 +7,8 @@
 
 namespace koppel {
 
-/// A P = Q [T; 0] with column pivoting and T of full row rank; where T is wide, T' is factorised too (a complete orthogonal
-/// decomposition), so that solutions have the least norm.
+/// A P = Q [T; 0] with column pivoting and T of full row rank; where T is wide, T' is factorised too (a complete
+/// orthogonal decomposition), so that solutions have the least norm.
 class Factorisation {
  public:
   Factorisation(Eigen::Index rows, Eigen::Index columns);

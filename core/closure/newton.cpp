@@ -6,7 +6,7 @@
 namespace koppel {
 namespace {
 
-constexpr double largest_step = 0.5;       // radians, or lengths of the scene: beyond it a linear step means little
+constexpr double largest_step = 0.5;  // radians, or lengths of the scene: beyond it a linear step means little
 constexpr int largest_halvings = 10;
 constexpr double rounding_region = 1e-12;  // here a step that gains less than half has met rounding
 

@@ -22,9 +22,9 @@ struct Work {
 
   std::shared_ptr<const Mechanism> mechanism;
   Equations equations;
-  Factorisation factorisation;          ///< of the columns of the unknowns
-  bool factorised = false;              ///< equations stand, and `factorisation` holds, at the position below
-  Eigen::VectorXd factorised_at;        ///< nq
+  Factorisation factorisation;    ///< of the columns of the unknowns
+  bool factorised = false;        ///< equations stand, and `factorisation` holds, at the position below
+  Eigen::VectorXd factorised_at;  ///< nq
   double factorised_time = 0.0;
 
   Eigen::VectorXd q, q_trial, q_start;  ///< nq
@@ -34,7 +34,7 @@ struct Work {
   Eigen::VectorXd rest;                 ///< nv zeros
   State saved;                          ///< what a failed move goes back to
 
-  std::unique_ptr<CeresClosure> ceres;  ///< built on first need
+  std::unique_ptr<CeresClosure> ceres;         ///< built on first need
   std::unique_ptr<Factorisation> all_columns;  ///< when the inputs are free too; built on first need
 };
 

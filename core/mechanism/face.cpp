@@ -144,7 +144,8 @@ void Face::turning_rows(const Pose& pose, double* residual, double* jacobian) co
       const bool opposite = cosine < 0.0 && sine < 1e-8;
       Eigen::Map<Eigen::Vector2d> out(residual);
       out = opposite ? Eigen::Vector2d(std::numbers::pi, 0.0) : Eigen::Vector2d(ratio.value * components);
-      // Along a turn omega (inlet axes): dw = omega x w, d(u x w) = -skew(u) skew(w) omega, d(theta) = across/sine . omega.
+      // Along a turn omega (inlet axes): dw = omega x w, d(u x w) = -skew(u) skew(w) omega, d(theta) = across/sine .
+      // omega.
       const Matrix3 turn_across = -skew(u) * skew(w);
       Eigen::Matrix<double, 2, 3> rows = ratio.value * t.transpose() * turn_across;
       rows += ratio.slope * components * across.transpose();

@@ -1,0 +1,140 @@
+#include "closure/closing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "closure/ceres_closure.hpp"
+
+namespace koppel {
+namespace {
+
+constexpr double largest_move = 0.35;  // of any unknown in one step that is believed without looking closer
+constexpr double smallest_fraction = 1.0 / 4096.0;
+constexpr std::uint32_t default_ceres_iterations = 500;
+
+}  // namespace
+
+Closing::Closing(Work& work, const State& state, const CloseOptions& options, Report& report)
+    : work_(work), mechanism_(*work.mechanism), state_(state), options_(options), report_(report) {
+  newton_.max_iterations = options.max_iterations == 0 ? 50 : options.max_iterations;
+  if (options.tolerance > 0.0) newton_.tolerance = options.tolerance;
+  ceres_iterations_ = options.max_iterations == 0 ? default_ceres_iterations : options.max_iterations;
+}
+
+bool Closing::follow() {
+  predict();
+  if (options_.method != Method::ceres && try_newton() && moved_little()) return true;
+  if (plugin_failed_) return false;
+  if (options_.method == Method::automatic && lead(state_.q)) return true;
+  if (plugin_failed_ || options_.method == Method::newton) return false;
+  work_.q = state_.q;
+  set_inputs(1.0);
+  if (!try_ceres()) return false;
+  work_.q_start = state_.q;
+  branch_changed_ = !moved_little();
+  return true;
+}
+
+bool Closing::assemble() {
+  work_.q = state_.q;
+  set_inputs(1.0);
+  if (options_.method != Method::ceres && try_newton()) return true;
+  if (plugin_failed_ || options_.method == Method::newton) return false;
+  work_.q = state_.q;
+  set_inputs(1.0);
+  if (try_ceres()) return true;
+  if (plugin_failed_ || options_.method == Method::ceres || mechanism_.inputs.empty()) return false;
+  // Let the inputs go, close wherever it is nearest, and lead them to where they should be.
+  work_.q = state_.q;
+  if (!try_newton(InputsAre::free)) {
+    work_.q = state_.q;
+    if (plugin_failed_ || !try_ceres(InputsAre::free)) return false;
+  }
+  return lead(work_.q);
+}
+
+bool Closing::try_newton(InputsAre inputs) {
+  newton_.inputs = inputs;
+  const NewtonResult result = newton(work_, state_.time, newton_);
+  report_.iterations += result.iterations;
+  if (result.iterations > 0) report_.solver = SolverUsed::newton;
+  plugin_failed_ = result.plugin_failed;
+  return result.converged;
+}
+
+/// Ceres comes near; Newton takes it down to rounding.
+bool Closing::try_ceres(InputsAre inputs) {
+  if (!work_.ceres) work_.ceres = std::make_unique<CeresClosure>(work_);
+  const CeresClosure::Result result = work_.ceres->solve(state_.time, ceres_iterations_, inputs);
+  report_.iterations += result.iterations;
+  plugin_failed_ = result.plugin_failed;
+  if (plugin_failed_) return false;
+  const bool converged = try_newton(inputs);
+  report_.solver = SolverUsed::ceres;
+  return converged;
+}
+
+/// Sets the driven coordinates of work.q to a fraction of the way from where the search started to their targets.
+void Closing::set_inputs(double fraction) {
+  for (std::size_t i = 0; i < mechanism_.inputs.size(); ++i) {
+    const std::uint32_t q = mechanism_.inputs[i].q;
+    const double target = state_.input[static_cast<Eigen::Index>(i)];
+    // Exactly the target at the end, not a sum that rounds.
+    work_.q[q] = fraction == 1.0 ? target : work_.q_start[q] + fraction * (target - work_.q_start[q]);
+  }
+}
+
+/// From the last position along velocity, acceleration and the change of acceleration over the last step.
+void Closing::predict() {
+  work_.q = state_.q;
+  const double h = state_.time - state_.history.time;
+  if (state_.stage == Stage::accelerations && h != 0.0) {
+    work_.delta = h * state_.v + (h * h / 2.0) * state_.a;
+    if (state_.history.step != 0.0) {
+      work_.delta += (h * h * h / 6.0 / state_.history.step) * (state_.a - state_.history.acceleration);
+    }
+    // A wild extrapolation is worse than none.
+    if (greatest_unknown(work_.delta) <= largest_move) integrate(mechanism_, state_.q, work_.delta, work_.q);
+  }
+  work_.q_start = work_.q;
+  set_inputs(1.0);
+}
+
+/// Largest component of a change of coordinates, in radians' size; of unknowns only.
+double Closing::greatest_unknown(const Eigen::VectorXd& delta) const {
+  double result = 0.0;
+  for (std::uint32_t i = 0; i < mechanism_.unknowns; ++i) {
+    const std::uint32_t rate = mechanism_.rate_of_column[i];
+    result = std::max(result, std::abs(delta[rate]) / mechanism_.rate_scale[rate]);
+  }
+  return result;
+}
+
+bool Closing::moved_little() {
+  difference(mechanism_, work_.q_start, work_.q, work_.delta);
+  return greatest_unknown(work_.delta) <= largest_move;
+}
+
+/// Leads the inputs from a closed position to their targets, in steps that halve when they are not believed.
+bool Closing::lead(const Eigen::VectorXd& from) {
+  Eigen::VectorXd& here = work_.q_start;
+  if (&from != &here) here = from;
+  double done = 0.0, fraction = 1.0;
+  while (done < 1.0) {
+    const double left = 1.0 - done;
+    const double next = std::min(left, fraction);
+    work_.q = here;
+    set_inputs(next >= left ? 1.0 : next / left);
+    if (try_newton() && moved_little()) {
+      here = work_.q;
+      done = next >= left ? 1.0 : done + next;
+      fraction = std::min(1.0, 2.0 * next);
+      continue;
+    }
+    if (plugin_failed_ || next <= smallest_fraction) return false;
+    fraction = next / 2.0;
+  }
+  return true;
+}
+
+}  // namespace koppel

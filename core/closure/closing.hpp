@@ -1,0 +1,49 @@
+// The search for a closed position: following a mechanism from the last one, or assembling it from anywhere.
+#pragma once
+
+#include <cstdint>
+
+#include "closure/close.hpp"
+#include "closure/newton.hpp"
+#include "closure/report.hpp"
+#include "closure/work.hpp"
+#include "mechanism/state.hpp"
+
+namespace koppel {
+
+/// One closure. Where a function returns true, work.q is closed for the state's inputs and the equations stand there.
+class Closing {
+ public:
+  Closing(Work& work, const State& state, const CloseOptions& options, Report& report);
+
+  /// From the state's q, which was closed for other inputs: extrapolates, and leads the inputs in smaller steps if that
+  /// is not enough; falls back on Ceres.
+  bool follow();
+  /// From any q: Newton if it is near, Ceres from further away; last lets the inputs go, closes, and leads them back.
+  bool assemble();
+
+  bool plugin_failed() const { return plugin_failed_; }
+  /// follow() only came through by a jump.
+  bool branch_changed() const { return branch_changed_; }
+
+ private:
+  bool try_newton(InputsAre inputs = InputsAre::held);
+  bool try_ceres(InputsAre inputs = InputsAre::held);
+  void set_inputs(double fraction);
+  void predict();
+  bool moved_little();
+  double greatest_unknown(const Eigen::VectorXd& delta) const;
+  bool lead(const Eigen::VectorXd& from);
+
+  Work& work_;
+  const Mechanism& mechanism_;
+  const State& state_;
+  const CloseOptions& options_;
+  Report& report_;
+  NewtonOptions newton_;
+  std::uint32_t ceres_iterations_ = 0;
+  bool plugin_failed_ = false;
+  bool branch_changed_ = false;
+};
+
+}  // namespace koppel

@@ -36,7 +36,8 @@ logged() {
 # missing PACKAGE...: those that are not installed. Asks dpkg only: no network, a few milliseconds.
 missing() {
   local installed package
-  installed=" $(dpkg-query -W -f='${db:Status-Status}:${Package} ' "$@" 2>/dev/null) "
+  # dpkg-query fails where it does not know a package at all: that one is missing, too.
+  installed=" $(dpkg-query -W -f='${db:Status-Status}:${Package} ' "$@" 2>/dev/null || true) "
   for package in "$@"; do
     [[ $installed == *" installed:$package "* ]] || echo "$package"
   done

@@ -108,7 +108,8 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
   const bool tracking = state.stage != Stage::assigned;
   if (tracking && inputs_taken(mechanism, state)) {
     if (!factorise_at(work, state.q, state.time)) return KOPPEL_PLUGIN;
-    if (!mechanism.explicit_time || work.equations.error() <= NewtonOptions{}.tolerance) {
+    const bool same_equations = !mechanism.explicit_time || state.time == state.history.time;
+    if (same_equations || work.equations.error() <= NewtonOptions{}.tolerance) {
       if (state.time != state.history.time) remember(state);
       return describe(work, report);
     }
@@ -117,7 +118,7 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
   const bool closed = tracking ? closing.follow() : closing.assemble();
   if (closing.plugin_failed()) return KOPPEL_PLUGIN;
   if (!closed) {
-    report.residual = work.equations.error();
+    report.residual = closing.nearest();
     report.verdict = tracking && options.method == Method::newton ? Verdict::retry : Verdict::not_found;
     return report.verdict == Verdict::retry ? KOPPEL_RETRY : KOPPEL_NOT_CLOSED;
   }

@@ -59,7 +59,17 @@ bool Closing::try_newton(InputsAre inputs) {
   report_.iterations += result.iterations;
   if (result.iterations > 0) report_.solver = SolverUsed::newton;
   plugin_failed_ = result.plugin_failed;
+  if (!result.converged && inputs == InputsAre::held && inputs_at_target()) {
+    nearest_ = std::min(nearest_, work_.equations.error());
+  }
   return result.converged;
+}
+
+bool Closing::inputs_at_target() const {
+  for (std::size_t i = 0; i < mechanism_.inputs.size(); ++i) {
+    if (work_.q[mechanism_.inputs[i].q] != state_.input[static_cast<Eigen::Index>(i)]) return false;
+  }
+  return true;
 }
 
 /// Ceres comes near; Newton takes it down to rounding.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "closure/close.hpp"
 #include "closure/newton.hpp"
@@ -23,6 +24,8 @@ class Closing {
   bool assemble();
 
   bool plugin_failed() const { return plugin_failed_; }
+  /// After a search without success: the least error that was left with the inputs where they should be.
+  double nearest() const { return nearest_; }
   /// follow() only came through by a jump.
   bool branch_changed() const { return branch_changed_; }
 
@@ -30,6 +33,7 @@ class Closing {
   bool try_newton(InputsAre inputs = InputsAre::held);
   bool try_ceres(InputsAre inputs = InputsAre::held);
   void set_inputs(double fraction);
+  bool inputs_at_target() const;
   void predict();
   bool moved_little();
   double greatest_unknown(const Eigen::VectorXd& delta) const;
@@ -42,6 +46,7 @@ class Closing {
   Report& report_;
   NewtonOptions newton_;
   std::uint32_t ceres_iterations_ = 0;
+  double nearest_ = std::numeric_limits<double>::infinity();
   bool plugin_failed_ = false;
   bool branch_changed_ = false;
 };

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double largest_step = 0.5;  // radians, or lengths of the scene: beyond it a linear step means little
 constexpr int largest_halvings = 10;
-constexpr double rounding_region = 1e-12;  // here a step that gains less than half has met rounding
+constexpr std::uint32_t finishing_steps = 4;  // more than are asked for, to take what is all but closed to rounding
+constexpr double rounding_region = 1e-12;     // here a step that gains less than half has met rounding
 
 /// delta = factor * step, spread from columns to rates.
 void spread(const Mechanism& mechanism, const Eigen::VectorXd& step, double factor, Eigen::Index columns,
@@ -40,7 +41,8 @@ NewtonResult newton(Work& work, double time, const NewtonOptions& options) {
   work.factorised = false;
   if (!equations.evaluate(work.q, time)) return fail_plugin();
   double error = equations.error(), norm = equations.residual.norm();
-  while (error > options.tolerance && result.iterations < options.max_iterations && columns > 0) {
+  const auto steps = [&] { return options.max_iterations + (error <= closed_limit ? finishing_steps : 0); };
+  while (error > options.tolerance && result.iterations < steps() && columns > 0) {
     ++result.iterations;
     equations.evaluate_jacobian();
     factorisation.compute(equations.jacobian.leftCols(columns));

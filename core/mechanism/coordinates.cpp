@@ -54,8 +54,13 @@ void difference_block(BlockKind kind, const double* from, const double* to, doub
       const Vector3 across = m - n.dot(m) * n;
       const double sine = across.norm();
       const double angle = std::atan2(sine, n.dot(m));
+      if (sine == 0.0) {  // the same, or opposite: then every way is as long
+        delta[0] = angle;
+        delta[1] = 0.0;
+        return;
+      }
       const Eigen::Vector2d components = tangents<double>(n).transpose() * across;
-      store(Eigen::Vector2d((sine > 0.0 ? angle / sine : 1.0) * components), delta);
+      store(Eigen::Vector2d(angle / sine * components), delta);
       return;
     }
   }
@@ -83,7 +88,7 @@ void tangent_block(BlockKind kind, const double* q, double* jacobian) {
     }
     case BlockKind::unit_vector: {
       const Eigen::Matrix<double, 3, 2> t = tangents<double>(vector(q));
-      for (int i = 0; i < 3; ++i) {
+      for (Eigen::Index i = 0; i < 3; ++i) {
         jacobian[2 * i] = t(i, 0);
         jacobian[2 * i + 1] = t(i, 1);
       }

@@ -43,9 +43,14 @@ SineRatio sine_ratio(double sine, double cosine) {
     const double square = theta * theta;
     return {1.0 + square * (1.0 / 6.0 + square * 7.0 / 360.0), 1.0 / 3.0 + square * (2.0 / 15.0)};
   }
-  const double safe = std::max(sine, 1e-8);  // at half a turn the axis is arbitrary, the angle is not
-  return {theta / safe, (safe - theta * cosine) / (safe * safe * safe)};
+  return {theta / sine, (sine - theta * cosine) / (sine * sine * sine)};
 }
+
+// Below it the cross product of two unit vectors is rounding, and says nothing of its direction.
+constexpr double no_direction = 1e-14;
+
+/// Across u, where nothing tells which way: along no axis that a scene is likely to have.
+Vector3 any_way(const Vector3& u) { return tangents<double>(u) * Eigen::Vector2d(0.8, 0.6); }
 
 }  // namespace
 
@@ -87,13 +92,13 @@ std::optional<Face> Face::of(const Joint& joint) {
     along.col(static_cast<Eigen::Index>(i)) = face.translations_[i].axis;
   }
   if (along.cols() == 0) {
-    for (int i = 0; i < 3; ++i) face.fixed_directions_.push_back(Vector3::Unit(i));
+    for (int i = 0; i < 3; ++i) face.fixed_directions_.emplace_back(Vector3::Unit(i));
   } else {
     const Eigen::ColPivHouseholderQR<Matrix3> qr(
         (Matrix3() << along, Eigen::MatrixXd::Zero(3, 3 - along.cols())).finished());
     if (qr.rank() < along.cols()) return std::nullopt;
     const Matrix3 basis = qr.householderQ();
-    for (Eigen::Index i = along.cols(); i < 3; ++i) face.fixed_directions_.push_back(basis.col(i));
+    for (Eigen::Index i = along.cols(); i < 3; ++i) face.fixed_directions_.emplace_back(basis.col(i));
     face.translation_inverse_ = (along.transpose() * along).inverse() * along.transpose();
   }
 
@@ -139,17 +144,22 @@ void Face::turning_rows(const Pose& pose, double* residual, double* jacobian) co
       const Vector3 w = r * u;
       const Vector3 across = u.cross(w);
       const double sine = across.norm(), cosine = u.dot(w);
+      Eigen::Map<Eigen::Vector2d> out(residual);
+      JacobianRows rows(jacobian, 2, 6);
+      if (cosine < 0.0 && sine < no_direction) {  // upside down: every way back is half a turn
+        out = std::numbers::pi * t.transpose() * any_way(u);
+        rows.leftCols<3>() = t.transpose() * r;
+        return;
+      }
       const SineRatio ratio = sine_ratio(sine, cosine);
       const Eigen::Vector2d components = t.transpose() * across;
-      const bool opposite = cosine < 0.0 && sine < 1e-8;
-      Eigen::Map<Eigen::Vector2d> out(residual);
-      out = opposite ? Eigen::Vector2d(std::numbers::pi, 0.0) : Eigen::Vector2d(ratio.value * components);
-      // Along a turn omega (inlet axes): dw = omega x w, d(u x w) = -skew(u) skew(w) omega, d(theta) = across/sine .
-      // omega.
+      out = ratio.value * components;
+      // Along a turn omega (inlet axes): dw = omega x w, d(u x w) = -skew(u) skew(w) omega,
+      // d(theta) = across/sine . omega.
       const Matrix3 turn_across = -skew(u) * skew(w);
-      Eigen::Matrix<double, 2, 3> rows = ratio.value * t.transpose() * turn_across;
-      rows += ratio.slope * components * across.transpose();
-      JacobianRows(jacobian, 2, 6).leftCols<3>() = rows * r;
+      Eigen::Matrix<double, 2, 3> by_turn = ratio.value * t.transpose() * turn_across;
+      by_turn += ratio.slope * components * across.transpose();
+      rows.leftCols<3>() = by_turn * r;
       return;
     }
     case Turning::cross: {
@@ -158,7 +168,7 @@ void Face::turning_rows(const Pose& pose, double* residual, double* jacobian) co
       const Vector3 across = u.cross(w);
       const double sine = across.norm();
       residual[0] = std::atan2(sine, u.dot(w)) - std::atan2(u.cross(second).norm(), u.dot(second));
-      const Vector3 axis = sine > 1e-12 ? Vector3(across / sine) : Vector3(tangents<double>(u).col(0));
+      const Vector3 axis = sine > no_direction ? Vector3(across / sine) : any_way(u);
       JacobianRows(jacobian, 1, 6).leftCols<3>() = axis.transpose() * r;
       return;
     }

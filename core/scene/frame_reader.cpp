@@ -121,7 +121,7 @@ std::optional<Attachment> read_attachment(Reading& reading, Scope& scope, const 
                                           std::string_view what) {
   if (node.is_table()) {
     TableReader table(node, values);
-    const auto attachment = read_attachment(reading, scope, table);
+    auto attachment = read_attachment(reading, scope, table);
     table.finish();
     return attachment;
   }

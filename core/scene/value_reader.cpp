@@ -106,7 +106,7 @@ std::optional<Vector3> ValueReader::vector(const Node& node, std::string_view wh
 std::optional<Vector3> ValueReader::direction(const Node& node, std::string_view what) const {
   const auto given = vector(node, what);
   if (!given) return std::nullopt;
-  const auto unit = normalised(*given);
+  auto unit = normalised(*given);
   if (!unit) {
     report_.error(Code::zero_direction, node.place, std::string(what) + " has no length, so it has no direction",
                   "write a vector of any length but zero");
@@ -117,7 +117,7 @@ std::optional<Vector3> ValueReader::direction(const Node& node, std::string_view
 std::optional<Vector4> ValueReader::quaternion(const Node& node, std::string_view what) const {
   const auto values = numbers(node, what, 4, 4);
   if (!values) return std::nullopt;
-  const auto unit = normalised(Vector4((*values)[0], (*values)[1], (*values)[2], (*values)[3]));
+  auto unit = normalised(Vector4((*values)[0], (*values)[1], (*values)[2], (*values)[3]));
   if (!unit) {
     report_.error(Code::zero_direction, node.place, std::string(what) + " has no length, so it is no rotation",
                   "write [w, x, y, z]; [1, 0, 0, 0] turns nothing");

@@ -118,14 +118,17 @@ Matrix3T<T> right_jacobian_inverse(const Vector3T<T>& phi) {
 }
 
 /// Cardan angles (alpha, beta, gamma) of R = Rx(alpha) Ry(beta) Rz(gamma) (K-I-4.4.1). beta in [-pi/2, pi/2]. Where
-/// beta is +-pi/2 to rounding, gamma is set to 0.
+/// beta is +-pi/2 to rounding, gamma is set to 0; near there only the sum or difference of alpha and gamma is well
+/// determined, and gamma is chosen so that the three together make the matrix.
 template <typename T>
 Vector3T<T> cardan_angles(const Matrix3T<T>& r) {
-  using std::atan2, std::sqrt;
+  using std::atan2, std::cos, std::sin, std::sqrt;
   const T cosine = sqrt(r(0, 0) * r(0, 0) + r(0, 1) * r(0, 1));
   const T beta = atan2(r(0, 2), cosine);
   if (cosine < T(8) * std::numeric_limits<double>::epsilon()) return {atan2(r(2, 1), r(1, 1)), beta, T(0)};
-  return {atan2(-r(1, 2), r(2, 2)), beta, atan2(-r(0, 1), r(0, 0))};
+  const T alpha = atan2(-r(1, 2), r(2, 2));
+  const T c = cos(alpha), s = sin(alpha);
+  return {alpha, beta, atan2(c * r(1, 0) + s * r(2, 0), c * r(1, 1) + s * r(2, 1))};
 }
 
 /// Two unit vectors that complete the unit vector n to a right-handed frame (t1, t2, n); t1 = normalised(e x n) with e

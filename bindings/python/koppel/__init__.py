@@ -1,0 +1,14 @@
+"""koppel: mechanisms with closed loops, from Python. See README.md beside the package for a first example.
+
+Units are SI, angles radians. A Mechanism never changes and may be used by many threads; a State by one at a time.
+"""
+
+from .engine import Engine, Scene, load
+from .error import Error, Finding
+from .mechanism import Mechanism
+from .run import run
+from .state import Analysis, Report, State
+from .stream import Statistics, Stream
+
+__all__ = ["Analysis", "Engine", "Error", "Finding", "Mechanism", "Report", "Scene", "State", "Statistics", "Stream",
+           "load", "run"]

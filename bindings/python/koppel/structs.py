@@ -1,0 +1,81 @@
+"""The structs and constants of koppel.h, as ctypes sees them."""
+
+import ctypes as c
+
+ABI = (0, 1)  # major and minor version of the header that this file was written after
+
+OK = 0
+REDUNDANT, BRANCH_CHANGED, NEAR_SINGULAR, LIMIT_EXCEEDED = 1, 2, 4, 8
+STATUSES = {
+    -1: "retry with a smaller step", -2: "invalid argument", -3: "invalid scene", -4: "not closed", -5: "singular",
+    -6: "a plugin failed", -7: "version", -8: "input or output failed", -9: "no memory", -10: "internal",
+}
+SEVERITIES = ("note", "warning", "error")
+KINDS = {name: number for number, name in enumerate(
+    ("body", "frame", "joint", "coordinate", "rate", "input", "record", "equation", "scene"), start=1)}
+Q, V, A = 1, 2, 3
+VERDICTS = ("open", "closed", "not found", "retry")
+SOLVERS = ("none", "newton", "ceres")
+METHODS = ("auto", "newton", "ceres")
+
+
+class Version(c.Structure):
+    _fields_ = [("major", c.c_uint32), ("minor", c.c_uint32), ("patch", c.c_uint32)]
+
+
+class Sized(c.Structure):
+    """A struct that may grow: it starts with its size."""
+
+    def __init__(self, **values):
+        super().__init__(struct_size=c.sizeof(type(self)), **values)
+
+
+class Error(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("status", c.c_int32), ("severity", c.c_int32), ("line", c.c_int32),
+                ("column", c.c_int32), ("length", c.c_int32), ("code", c.c_char * 8), ("file", c.c_char * 512),
+                ("source_line", c.c_char * 512), ("element", c.c_char * 128), ("message", c.c_char * 512),
+                ("advice", c.c_char * 512)]
+
+
+class EngineOptions(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("plugin_path", c.c_char_p), ("standard_plugins", c.c_char_p),
+                ("log", c.CFUNCTYPE(None, c.c_void_p, c.c_int32, c.c_char_p)), ("log_context", c.c_void_p),
+                ("log_level", c.c_int32)]
+
+
+class Sizes(Sized):
+    _fields_ = [(name, c.c_uint32) for name in (
+        "struct_size", "bodies", "joints", "frames", "coordinates", "rates", "inputs", "records", "loops",
+        "constraints", "equations", "unknowns")]
+
+
+class Settings(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("steps", c.c_uint32), ("duration", c.c_double), ("length", c.c_double),
+                ("gravity", c.c_double * 3), ("hash", c.c_uint64)]
+
+
+class Report(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("verdict", c.c_int32), ("solver", c.c_int32),
+                ("iterations", c.c_uint32), ("rank", c.c_uint32), ("equations", c.c_uint32),
+                ("unknowns", c.c_uint32), ("residual", c.c_double), ("condition", c.c_double),
+                ("coordinate_error", c.c_double)]
+
+
+class CloseOptions(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("method", c.c_int32), ("max_iterations", c.c_uint32),
+                ("tolerance", c.c_double)]
+
+
+class Analysis(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("mobility_count", c.c_int32), ("mobility_rank", c.c_int32),
+                ("rank", c.c_uint32), ("equations", c.c_uint32), ("tree_rates", c.c_uint32),
+                ("largest_singular_value", c.c_double), ("last_singular_value", c.c_double), ("gap", c.c_double)]
+
+
+class StreamOptions(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("url", c.c_char_p), ("name", c.c_char_p), ("period", c.c_double)]
+
+
+class StreamStatistics(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("reserved", c.c_uint32), ("published", c.c_uint64),
+                ("sent", c.c_uint64), ("dropped", c.c_uint64), ("failed", c.c_uint64)]

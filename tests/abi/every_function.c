@@ -1,0 +1,274 @@
+/* A host in strict C11 that calls every function of koppel.h on real scenes and checks what comes back.
+ * every_function SCENES PLUGIN LOG: the folder of the shipped scenes, a plugin to load, a file to stream into. */
+#include <koppel/koppel.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int checks = 0, failures = 0;
+
+static void check(int true_or_not, const char* what, int line) {
+  ++checks;
+  if (true_or_not) return;
+  ++failures;
+  fprintf(stderr, "every_function.c:%d: %s\n", line, what);
+}
+#define CHECK(condition) check((condition) ? 1 : 0, #condition, __LINE__)
+#define CHECK_OK(call) CHECK((call) >= KOPPEL_OK)
+#define CHECK_NEAR(a, b, tolerance) CHECK(fabs((a) - (b)) <= (tolerance))
+#define SIZED(type, name) type name = {.struct_size = sizeof(type)}
+
+enum { MOST = 256 }; /* numbers of anything in the scenes used here */
+
+/* ---- a plugin that is linked into the host: the function x^2 */
+
+static koppel_status square(size_t count, const void* const* instances, const double* x, double* out) {
+  (void)instances;
+  for (size_t i = 0; i < count; ++i) {
+    out[3 * i] = x[i] * x[i];
+    out[3 * i + 1] = 2.0 * x[i];
+    out[3 * i + 2] = 2.0;
+  }
+  return KOPPEL_OK;
+}
+
+static const void* host_types(const char* interface_id, size_t index) {
+  static const koppel_type type = {.struct_size = sizeof type, .name = "host.square", .summary = "The square of time."};
+  static const koppel_function_type function = {.struct_size = sizeof function, .type = &type, .evaluate = square};
+  return strcmp(interface_id, KOPPEL_FUNCTION_INTERFACE) == 0 && index == 0 ? &function : NULL;
+}
+
+static const koppel_plugin_entry host_plugin = {
+    .struct_size = sizeof(koppel_plugin_entry),
+    .abi = {KOPPEL_ABI_MAJOR, KOPPEL_ABI_MINOR, KOPPEL_ABI_PATCH},
+    .name = "host",
+    .type_table = host_types,
+};
+
+static void count_lines(void* context, int32_t level, const char* message) {
+  *(int*)context += level >= KOPPEL_LOG_DEBUG && message[0] != '\0';
+}
+
+/* ---- findings and codes */
+
+static void explains_its_findings(koppel_engine* engine) {
+  static const char text[] = "schema = 1\n[[body]]\nname = \"arm\"\nmas = 2\n";
+  koppel_diagnostics* diagnostics = NULL;
+  koppel_scene* scene = NULL;
+  SIZED(koppel_error, error);
+  SIZED(koppel_error, finding);
+  char words[2048];
+  size_t needed = 0;
+  CHECK_OK(koppel_diagnostics_create(&diagnostics));
+  CHECK(koppel_diagnostics_count(diagnostics) == 0);
+  CHECK(koppel_scene_from_text(engine, text, strlen(text), NULL, diagnostics, &scene, &error) == KOPPEL_INVALID_SCENE);
+  CHECK(scene == NULL);
+  CHECK(koppel_diagnostics_count(diagnostics) == 1);
+  CHECK_OK(koppel_diagnostics_get(diagnostics, 0, &finding));
+  CHECK(memcmp(&error, &finding, sizeof error) == 0);
+  CHECK(strcmp(finding.code, "E0201") == 0 && finding.line == 4 && strcmp(finding.source_line, "mas = 2") == 0);
+  CHECK_OK(koppel_diagnostics_render(diagnostics, words, sizeof words, &needed));
+  CHECK(strstr(words, "mas = 2") != NULL && needed == strlen(words) + 1);
+  CHECK_OK(koppel_explain_code(finding.code, words, sizeof words, &needed));
+  CHECK(needed == strlen(words) + 1);
+  koppel_diagnostics_destroy(diagnostics);
+}
+
+/* ---- what is known of a mechanism before it moves */
+
+static void describes_itself(const koppel_mechanism* mechanism) {
+  SIZED(koppel_sizes, sizes);
+  SIZED(koppel_settings, settings);
+  SIZED(koppel_closure, closure);
+  SIZED(koppel_inertia, inertia);
+  SIZED(koppel_error, error);
+  char text[8192];
+  uint32_t path[MOST];
+  size_t index = MOST, needed = 0;
+  CHECK_OK(koppel_mechanism_sizes(mechanism, &sizes));
+  CHECK(sizes.bodies == 8 && sizes.joints == 12 && sizes.loops == 5 && sizes.inputs == 2 && sizes.constraints == 0);
+  CHECK_OK(koppel_mechanism_settings(mechanism, &settings));
+  CHECK(settings.steps == 320 && settings.duration == 1.0 && settings.gravity[2] == -9.81 && settings.hash != 0);
+  CHECK_OK(koppel_mechanism_find(mechanism, KOPPEL_KIND_INPUT, "rack.displacement", &index, &error));
+  CHECK(index == 1);
+  CHECK_OK(koppel_mechanism_name(mechanism, KOPPEL_KIND_INPUT, index, text, sizeof text, &needed));
+  CHECK(strcmp(text, "rack.displacement") == 0);
+  CHECK_OK(koppel_mechanism_unit(mechanism, KOPPEL_KIND_INPUT, index, text, sizeof text, NULL));
+  CHECK(strcmp(text, "m") == 0);
+  CHECK_OK(koppel_mechanism_explain(mechanism, text, sizeof text, &needed));
+  uint32_t equations = 0;
+  for (uint32_t i = 0; i < sizes.loops + sizes.constraints; ++i) {
+    CHECK_OK(koppel_mechanism_closure(mechanism, i, &closure, NULL, 0));
+    CHECK(closure.first_equation == equations && closure.path > 0 && closure.path <= sizes.joints);
+    CHECK_OK(koppel_mechanism_closure(mechanism, i, &closure, path, closure.path));
+    CHECK(path[0] < sizes.joints && (int32_t)path[0] != closure.joint);
+    equations += closure.equations;
+  }
+  CHECK(equations == sizes.equations);
+  CHECK_OK(koppel_body_inertia(mechanism, 1, &inertia, &error));
+}
+
+/* ---- closing, rates, results */
+
+static void closes_by_every_method(const koppel_mechanism* mechanism, koppel_work* work) {
+  for (int32_t method = KOPPEL_METHOD_AUTO; method <= KOPPEL_METHOD_CERES; ++method) {
+    koppel_state* state = NULL;
+    koppel_close_options options = {.struct_size = sizeof options, .method = method};
+    SIZED(koppel_report, report);
+    SIZED(koppel_analysis, analysis);
+    CHECK_OK(koppel_state_create(mechanism, &state));
+    CHECK_OK(koppel_close(state, work, &options, &report, NULL));
+    CHECK(report.verdict == KOPPEL_VERDICT_CLOSED && report.residual < 1e-13 && report.rank == 15);
+    CHECK_OK(koppel_analyse(state, work, &analysis, NULL));
+    CHECK(analysis.mobility_count == 2 && analysis.mobility_rank == 2);
+    koppel_state_destroy(state);
+  }
+}
+
+/* The wheel goes up at 1 m/s from the design position: golden rates of X-5LINK. */
+static void has_rates(koppel_state* state, koppel_work* work, size_t frame, const koppel_sizes* sizes) {
+  static const double golden[6] = {-0.452162529, -0.166312272, -0.377515966, -0.008969121, -0.006120659, 1.0};
+  double twists[6 * MOST], accelerations[6 * MOST], jacobian[6 * MOST], rate[6 * MOST], v[MOST], a[MOST];
+  CHECK_OK(koppel_state_set_input(state, 0, 0.0, 1.0, 0.0));
+  CHECK_OK(koppel_state_set_input(state, 1, 0.0, 0.0, 0.0));
+  CHECK_OK(koppel_close(state, work, NULL, NULL, NULL));
+  CHECK_OK(koppel_velocities(state, work, NULL));
+  CHECK_OK(koppel_accelerations(state, work, NULL));
+  CHECK_OK(koppel_state_get(state, KOPPEL_V, v, sizes->rates));
+  CHECK_OK(koppel_state_get(state, KOPPEL_A, a, sizes->rates));
+  CHECK_OK(koppel_twists(state, work, KOPPEL_KIND_FRAME, twists, 6 * (size_t)sizes->frames));
+  CHECK_OK(koppel_frame_accelerations(state, work, KOPPEL_KIND_FRAME, accelerations, 6 * (size_t)sizes->frames));
+  CHECK_OK(koppel_jacobian(state, work, KOPPEL_KIND_FRAME, frame, jacobian, rate, 6 * (size_t)sizes->rates));
+  for (size_t row = 0; row < 6; ++row) {
+    double twist = 0.0, acceleration = 0.0; /* J v, and J a + J' v */
+    for (size_t i = 0; i < sizes->rates; ++i) {
+      twist += jacobian[row * sizes->rates + i] * v[i];
+      acceleration += jacobian[row * sizes->rates + i] * a[i] + rate[row * sizes->rates + i] * v[i];
+    }
+    CHECK_NEAR(twists[6 * frame + row], golden[row], 0.5e-9);
+    CHECK_NEAR(twists[6 * frame + row], twist, 1e-12);
+    CHECK_NEAR(accelerations[6 * frame + row], acceleration, 1e-11);
+  }
+}
+
+static void moves(koppel_state* state, koppel_work* work, size_t frame, const koppel_sizes* sizes) {
+  SIZED(koppel_report, report);
+  double poses[12 * MOST], records[MOST];
+  for (int i = 0; i <= 20; ++i) {
+    CHECK_OK(koppel_move(state, work, i / 20.0, &report, NULL));
+    CHECK(report.residual < 1e-13);
+  }
+  CHECK(koppel_state_time(state) == 1.0);
+  CHECK_OK(koppel_poses(state, work, KOPPEL_KIND_FRAME, poses, 12 * (size_t)sizes->frames));
+  CHECK_NEAR(poses[12 * frame + 9], 0.000131326, 0.5e-9); /* X-5LINK at +80 mm */
+  CHECK_NEAR(poses[12 * frame + 10], -0.749874340, 0.5e-9);
+  CHECK_OK(koppel_records(state, work, records, sizes->records));
+  CHECK_NEAR(records[0], 0.08, 1e-15);
+}
+
+static void keeps_copies(const koppel_mechanism* mechanism, const koppel_state* state, const koppel_sizes* sizes) {
+  koppel_state* other = NULL;
+  double q[MOST], same[MOST];
+  CHECK_OK(koppel_state_create(mechanism, &other));
+  CHECK_OK(koppel_state_copy(state, other));
+  CHECK_OK(koppel_state_get(state, KOPPEL_Q, q, sizes->coordinates));
+  CHECK_OK(koppel_state_get(other, KOPPEL_Q, same, sizes->coordinates));
+  CHECK(memcmp(q, same, sizes->coordinates * sizeof q[0]) == 0);
+  CHECK_OK(koppel_state_set_time(other, 0.25, NULL));
+  CHECK(koppel_state_time(other) == 0.25 && koppel_state_time(state) == 1.0);
+  CHECK_OK(koppel_state_set(other, KOPPEL_Q, q, sizes->coordinates));
+  koppel_state_destroy(other);
+}
+
+/* ---- streams */
+
+static void streams(const koppel_mechanism* mechanism, const koppel_state* state, koppel_work* work, const char* file) {
+  char url[1024];
+  SIZED(koppel_report, report);
+  SIZED(koppel_stream_statistics, statistics);
+  koppel_stream_options options = {.struct_size = sizeof options, .url = url, .name = "WHEEL"};
+  koppel_stream* stream = NULL;
+  snprintf(url, sizeof url, "file://%s?mode=w", file);
+  CHECK_OK(koppel_stream_open(mechanism, &options, &stream, NULL));
+  for (int i = 0; i < 10; ++i) CHECK_OK(koppel_stream_publish(stream, state, work, &report));
+  CHECK_OK(koppel_stream_event(stream, 1.0, KOPPEL_SEVERITY_NOTE, "at the bump stop"));
+  CHECK_OK(koppel_stream_close(stream, &statistics));
+  CHECK(statistics.published == 10 && statistics.sent == 10 && statistics.dropped == 0 && statistics.failed == 0);
+}
+
+/* ---- the whole life of a host */
+
+static void drives_by_its_own_function(koppel_engine* engine) {
+  static const char text[] =
+      "schema = 1\n[[body]]\nname = \"arm\"\n[[joint]]\nname = \"pivot\"\ntype = \"revolute\"\n"
+      "between = [\"ground\", \"arm\"]\n[[drive]]\nof = \"pivot.angle\"\ntype = \"host.square\"\n";
+  koppel_scene* scene = NULL;
+  koppel_mechanism* mechanism = NULL;
+  koppel_state* state = NULL;
+  koppel_work* work = NULL;
+  double q = 0.0, v = 0.0, a = 0.0;
+  CHECK_OK(koppel_scene_from_text(engine, text, strlen(text), NULL, NULL, &scene, NULL));
+  CHECK_OK(koppel_mechanism_compile(scene, NULL, &mechanism, NULL));
+  CHECK_OK(koppel_state_create(mechanism, &state));
+  CHECK_OK(koppel_work_create(mechanism, &work));
+  CHECK_OK(koppel_move(state, work, 3.0, NULL, NULL));
+  CHECK_OK(koppel_state_get(state, KOPPEL_Q, &q, 1));
+  CHECK_OK(koppel_state_get(state, KOPPEL_V, &v, 1));
+  CHECK_OK(koppel_state_get(state, KOPPEL_A, &a, 1));
+  CHECK(q == 9.0 && v == 6.0 && a == 2.0);
+  koppel_work_destroy(work);
+  koppel_state_destroy(state);
+  koppel_mechanism_destroy(mechanism);
+  koppel_scene_destroy(scene);
+}
+
+static void uses_a_suspension(koppel_engine* engine, const char* scenes, const char* log) {
+  char file[1024];
+  koppel_scene* scene = NULL;
+  koppel_mechanism* mechanism = NULL;
+  koppel_state* state = NULL;
+  koppel_work* work = NULL;
+  SIZED(koppel_sizes, sizes);
+  SIZED(koppel_error, error);
+  size_t frame = MOST;
+  snprintf(file, sizeof file, "%s/5link.toml", scenes);
+  CHECK_OK(koppel_scene_from_file(engine, file, NULL, &scene, &error));
+  CHECK_OK(koppel_mechanism_compile(scene, NULL, &mechanism, &error));
+  CHECK_OK(koppel_mechanism_sizes(mechanism, &sizes));
+  CHECK_OK(koppel_mechanism_find(mechanism, KOPPEL_KIND_FRAME, "wheel_centre", &frame, &error));
+  CHECK_OK(koppel_state_create(mechanism, &state));
+  CHECK_OK(koppel_work_create(mechanism, &work));
+  if (failures > 0 || sizes.coordinates > MOST) return;
+  describes_itself(mechanism);
+  closes_by_every_method(mechanism, work);
+  has_rates(state, work, frame, &sizes);
+  moves(state, work, frame, &sizes);
+  keeps_copies(mechanism, state, &sizes);
+  streams(mechanism, state, work, log);
+  koppel_work_destroy(work);
+  koppel_state_destroy(state);
+  koppel_mechanism_destroy(mechanism);
+  koppel_scene_destroy(scene);
+}
+
+int main(int count, char** arguments) {
+  if (count != 4) return 2;
+  int lines = 0;
+  koppel_engine* engine = NULL;
+  SIZED(koppel_error, error);
+  koppel_engine_options options = {
+      .struct_size = sizeof options, .log = count_lines, .log_context = &lines, .log_level = KOPPEL_LOG_DEBUG};
+  const koppel_version version = koppel_library_version();
+  CHECK(version.major == KOPPEL_ABI_MAJOR && version.minor >= KOPPEL_ABI_MINOR);
+  CHECK_OK(koppel_engine_create(KOPPEL_ABI_MAJOR, KOPPEL_ABI_MINOR, &options, &engine, &error));
+  CHECK_OK(koppel_engine_add_plugin(engine, &host_plugin, &error));
+  CHECK_OK(koppel_engine_load_plugin(engine, arguments[2], &error));
+  CHECK(lines > 0);
+  explains_its_findings(engine);
+  drives_by_its_own_function(engine);
+  uses_a_suspension(engine, arguments[1], arguments[3]);
+  koppel_engine_destroy(engine);
+  printf("%d checks, %d failures\n", checks, failures);
+  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

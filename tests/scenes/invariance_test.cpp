@@ -1,0 +1,166 @@
+// What must not change the motion of a scene: names, order, which side of a joint is its inlet, where the scene lies in
+// the world, and whose plugin a joint's type comes from.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "model.hpp"
+#include "rewriting.hpp"
+
+namespace koppel::test {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr std::uint64_t seeds[] = {1, 2, 3};
+
+/// Bodies between two balls spin about their own line without anything that decides how: only how that line lies can
+/// be compared.
+const std::multimap<std::string, std::string>& free_spins() {
+  static const std::multimap<std::string, std::string> spins{{"dwb", "upper_link"}};
+  return spins;
+}
+
+using Names = std::map<std::string, std::string>;
+
+class SameMotion : public testing::TestWithParam<std::string> {
+ protected:
+  const std::string text = shipped_scene(GetParam());
+  const Model original{text};
+
+  /// Bodies of the other scene move as those of the original do, seen from `place`. names: of bodies, old to new;
+  /// those not in it are the same.
+  void expect_same_motion(const std::string& other_text, const Names& names, const Place& place = {}) {
+    const Model other(other_text);
+    ASSERT_EQ(other.sizes().bodies, original.sizes().bodies);
+    EXPECT_EQ(other.sizes().loops, original.sizes().loops);
+    EXPECT_NEAR(other.settings().length, original.settings().length, 8 * eps * original.settings().length);
+    Motion first(original), second(other);
+    for (std::size_t i = 0; i <= original.settings().steps; ++i) {
+      const Outcome a = first.move(original.time(i)), b = second.move(original.time(i));
+      ASSERT_TRUE(a) << "step " << i << ": " << a.message;
+      ASSERT_TRUE(b) << "step " << i << ": " << b.message << '\n' << other_text;
+      compare(first, second, names, place, a.report.coordinate_error + b.report.coordinate_error);
+      if (HasFailure()) {
+        ADD_FAILURE() << "step " << i << '\n' << other_text;
+        return;
+      }
+    }
+    EXPECT_EQ(first.analysis().mobility_rank, second.analysis().mobility_rank);
+  }
+
+  /// The same numbers throughout, bit for bit.
+  void expect_same_bits(const Model& other) {
+    Motion first(original), second(other);
+    for (std::size_t i = 0; i <= original.settings().steps; ++i) {
+      ASSERT_TRUE(first.move(original.time(i)));
+      const Outcome outcome = second.move(original.time(i));
+      ASSERT_TRUE(outcome) << "step " << i << ": " << outcome.message;
+      ASSERT_TRUE(same_bits(first.positions(), second.positions())) << "step " << i;
+      ASSERT_TRUE(same_bits(first.accelerations(), second.accelerations())) << "step " << i;
+    }
+  }
+
+ private:
+  void compare(Motion& first, Motion& second, const Names& names, const Place& place, double coordinate_error) {
+    const Eigen::MatrixXd ours = first.poses(KOPPEL_KIND_BODY), theirs = second.poses(KOPPEL_KIND_BODY);
+    const Eigen::Matrix3d turned = place.rotation();
+    // Every joint on the way to a body adds what its coordinate may be wrong by, turned about a point within reach.
+    const double reach = original.settings().length + place.shift.norm() + ours.bottomRows(3).cwiseAbs().maxCoeff();
+    const double joints = original.sizes().joints;
+    const double turn_allowed = joints * (coordinate_error + 16 * eps), move_allowed = reach * turn_allowed;
+    for (std::size_t body = 1; body < original.sizes().bodies; ++body) {
+      const std::string name = original.name(KOPPEL_KIND_BODY, body);
+      const auto renamed = names.find(name);
+      const std::size_t twin = second.model().find(KOPPEL_KIND_BODY, renamed == names.end() ? name : renamed->second);
+      const auto pose = ours.col(static_cast<Eigen::Index>(body));
+      const auto twin_pose = theirs.col(static_cast<Eigen::Index>(twin));
+      if (spins(name)) continue;
+      EXPECT_LE((turned * rotation_of(pose) - rotation_of(twin_pose)).norm(), turn_allowed) << name;
+      EXPECT_LE((turned * position_of(pose) + place.shift - position_of(twin_pose)).norm(), move_allowed) << name;
+    }
+  }
+
+  bool spins(const std::string& body) const {
+    const auto [begin, end] = free_spins().equal_range(GetParam());
+    return std::any_of(begin, end, [&](const auto& entry) { return entry.second == body; });
+  }
+};
+
+// Otherwise more bodies would move as nobody says.
+TEST_P(SameMotion, IsDecidedByTheInputsButForFreeSpins) {
+  Motion motion(original);
+  motion.run_to(0);
+  const auto spinning = static_cast<std::int32_t>(free_spins().count(GetParam()));
+  EXPECT_EQ(motion.analysis().mobility_rank, static_cast<std::int32_t>(original.sizes().inputs) + spinning);
+}
+
+TEST_P(SameMotion, WhenRenamed) {
+  for (const std::uint64_t seed : seeds) {
+    Random random(seed);
+    Rewriting rewriting(text);
+    const Names names = rewriting.rename(random);
+    expect_same_motion(rewriting.text(), names);
+    expect_same_bits(Model(rewriting.text()));
+  }
+}
+
+TEST_P(SameMotion, WhenReordered) {
+  for (const std::uint64_t seed : seeds) {
+    Random random(seed);
+    Rewriting rewriting(text);
+    rewriting.reorder(random);
+    expect_same_motion(rewriting.text(), {});
+  }
+}
+
+TEST_P(SameMotion, WithInletsAndOutletsSwapped) {
+  for (const std::uint64_t seed : seeds) {
+    Random random(seed);
+    Rewriting rewriting(text);
+    rewriting.swap_joints(random);
+    expect_same_motion(rewriting.text(), {});
+  }
+}
+
+TEST_P(SameMotion, AnywhereInTheWorld) {
+  for (const std::uint64_t seed : seeds) {
+    Random random(seed);
+    Rewriting rewriting(text);
+    const Place place = random_place(random);
+    rewriting.relocate(place);
+    expect_same_motion(rewriting.text(), {}, place);
+  }
+}
+
+TEST_P(SameMotion, WithAllOfThisTogether) {
+  for (const std::uint64_t seed : seeds) {
+    Random random(seed);
+    Rewriting rewriting(text);
+    const Place place = random_place(random);
+    rewriting.swap_joints(random);
+    rewriting.reorder(random);
+    rewriting.relocate(place);
+    const Names names = rewriting.rename(random);
+    expect_same_motion(rewriting.text(), names, place);
+  }
+}
+
+TEST_P(SameMotion, ToTheBitWithStandardPluginsAsSharedObjects) {
+  expect_same_bits(Model(text, {nullptr, KOPPEL_STANDARD_PLUGINS}));
+}
+
+TEST_P(SameMotion, ToTheBitWithAStrangersJoints) {
+  Rewriting rewriting(text);
+  rewriting.change_vendor("acme");
+  expect_same_bits(Model(rewriting.text(), {KOPPEL_TEST_PLUGINS, nullptr}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SameMotion, testing::ValuesIn(shipped_scenes()),
+                         [](const auto& test) { return test_name(test.param); });
+
+}  // namespace
+}  // namespace koppel::test

@@ -1,0 +1,27 @@
+// Random directions and turns, the same ones in every run.
+#pragma once
+
+#include <random>
+
+#include "spatial/rotation.hpp"
+
+namespace koppel::test {
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+
+  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  Vector3 vector() { return {between(-1, 1), between(-1, 1), between(-1, 1)}; }
+  Vector3 direction() {
+    const Vector3 v = Vector3(normal_(engine_), normal_(engine_), normal_(engine_));
+    return v.normalized();
+  }
+  Matrix3 rotation() { return rotation_about<double>(direction(), between(-3.1, 3.1)); }
+
+ private:
+  std::mt19937 engine_;
+  std::normal_distribution<double> normal_;
+};
+
+}  // namespace koppel::test

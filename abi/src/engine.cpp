@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 
 #include <spdlog/sinks/base_sink.h>
@@ -85,7 +86,15 @@ koppel_status koppel_engine_create(uint32_t wanted_major, uint32_t wanted_minor,
     }
     const koppel_engine_options given = koppel::read_struct(options);
     koppel::Logger log = koppel::make_logger(given);
-    auto registry = std::make_shared<koppel::Registry>(koppel::registry_options(given, log));
+    koppel::RegistryOptions registry_options = koppel::registry_options(given, log);
+    const std::filesystem::path& standard = registry_options.standard_plugins;
+    if (std::error_code ignored; !standard.empty() && !std::filesystem::is_directory(standard, ignored)) {
+      return koppel::fail(koppel::make_error(koppel::Code::plugin_not_found, "engine",
+                                             "there is no folder `" + standard.string() + "` with standard plugins",
+                                             "correct the option or KOPPEL_STANDARD_PLUGINS, or leave both unset"),
+                          error);
+    }
+    auto registry = std::make_shared<koppel::Registry>(std::move(registry_options));
     *engine = new koppel_engine{std::move(log), std::move(registry)};
     return KOPPEL_OK;
   });

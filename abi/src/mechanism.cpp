@@ -138,9 +138,10 @@ koppel_status koppel_mechanism_find(const koppel_mechanism* mechanism, int32_t k
       return KOPPEL_OK;
     }
     const auto nearest = koppel::nearest_name(name, names);
-    return koppel::fail(koppel::make_error(koppel::Code::invalid_argument, {}, "there is no `" + std::string(name) + "`",
-                                           nearest ? "did you mean `" + *nearest + "`?" : std::string()),
-                        error);
+    return koppel::fail(
+        koppel::make_error(koppel::Code::invalid_argument, {}, "there is no `" + std::string(name) + "`",
+                           nearest ? "did you mean `" + *nearest + "`?" : std::string()),
+        error);
   });
 }
 
@@ -153,9 +154,9 @@ koppel_status koppel_mechanism_closure(const koppel_mechanism* mechanism, size_t
   if (path != nullptr && count != relation.joints.size()) return KOPPEL_INVALID_ARGUMENT;
   koppel_closure out{};
   const bool constraint = relation.kind == koppel::RelationKind::constraint;
-  out.kind = constraint                                            ? KOPPEL_CUT_NONE
+  out.kind = constraint                                         ? KOPPEL_CUT_NONE
              : relation.kind == koppel::RelationKind::cut_joint ? KOPPEL_CUT_JOINT
-                                                                   : KOPPEL_CUT_BODY;
+                                                                : KOPPEL_CUT_BODY;
   out.joint = constraint ? -1 : static_cast<std::int32_t>(relation.joint.value);
   out.first_equation = relation.first_row;
   out.equations = relation.rows;

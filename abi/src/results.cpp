@@ -12,9 +12,10 @@ bool fit(const koppel_state* state, const koppel_work* work) {
   return state != nullptr && work != nullptr && state->mechanism == work->work.mechanism;
 }
 
+bool has_poses(std::int32_t what) { return what == KOPPEL_KIND_BODY || what == KOPPEL_KIND_FRAME; }
+
 std::size_t count_of(const Mechanism& m, std::int32_t what) {
-  if (what == KOPPEL_KIND_BODY) return m.bodies.size();
-  return what == KOPPEL_KIND_FRAME ? m.frames.size() : 0;
+  return what == KOPPEL_KIND_BODY ? m.bodies.size() : m.frames.size();
 }
 
 Attachment frame_of(const Mechanism& m, std::int32_t what, std::size_t i) {
@@ -27,10 +28,10 @@ template <typename Write>
 koppel_status each(const koppel_state* state, koppel_work* work, std::int32_t what, double* out, std::size_t count,
                    std::size_t size, const Write& write) {
   return koppel::guarded(nullptr, [&]() -> koppel_status {
-    if (!fit(state, work) || out == nullptr) return KOPPEL_INVALID_ARGUMENT;
+    if (!fit(state, work) || !has_poses(what)) return KOPPEL_INVALID_ARGUMENT;
     const Mechanism& m = *state->mechanism;
     const std::size_t things = count_of(m, what);
-    if (things == 0 || count != size * things) return KOPPEL_INVALID_ARGUMENT;
+    if (count != size * things || (out == nullptr && count > 0)) return KOPPEL_INVALID_ARGUMENT;
     if (!koppel::realise(work->work, state->state)) return KOPPEL_PLUGIN;
     for (std::size_t i = 0; i < things; ++i) {
       write(work->work.equations.kinematics, frame_of(m, what, i), out + size * i);
@@ -72,7 +73,7 @@ koppel_status koppel_frame_accelerations(const koppel_state* state, koppel_work*
 koppel_status koppel_jacobian(const koppel_state* state, koppel_work* work, int32_t what, size_t index,
                               double* jacobian, double* rate, size_t count) {
   return koppel::guarded(nullptr, [&]() -> koppel_status {
-    if (!fit(state, work) || jacobian == nullptr) return KOPPEL_INVALID_ARGUMENT;
+    if (!fit(state, work) || jacobian == nullptr || !has_poses(what)) return KOPPEL_INVALID_ARGUMENT;
     const Mechanism& m = *state->mechanism;
     if (index >= count_of(m, what) || count != std::size_t{6} * m.nv) return KOPPEL_INVALID_ARGUMENT;
     if (!koppel::realise(work->work, state->state)) return KOPPEL_PLUGIN;

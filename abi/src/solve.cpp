@@ -40,8 +40,9 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, co
     case KOPPEL_SINGULAR:
       e.code = Code::inputs_inconsistent;
       e.message = "the inputs ask for rates that are impossible at time " + number(state.time) + " s";
-      e.advice = "this is a limit position, or there are more inputs than freedoms: stop before it, or drive another "
-                 "coordinate";
+      e.advice =
+          "this is a limit position, or there are more inputs than freedoms: stop before it, or drive another "
+          "coordinate";
       break;
     case KOPPEL_PLUGIN:
       e.code = Code::plugin_misbehaved;

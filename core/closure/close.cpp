@@ -18,6 +18,16 @@ bool inputs_taken(const Mechanism& mechanism, const State& state) {
   return true;
 }
 
+/// Rates and accelerations of the state still belong to its inputs.
+bool rates_taken(const Mechanism& mechanism, const State& state) {
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const std::uint32_t v = mechanism.inputs[i].v;
+    if (state.v[v] != state.input_rate[k] || state.a[v] != state.input_acceleration[k]) return false;
+  }
+  return true;
+}
+
 /// Jacobian and factorisation where the equations stand.
 void factorise_here(Work& work, const Eigen::VectorXd& q, double time) {
   work.equations.evaluate_jacobian();
@@ -110,7 +120,9 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
     if (!factorise_at(work, state.q, state.time)) return KOPPEL_PLUGIN;
     const bool same_equations = !mechanism.explicit_time || state.time == state.history.time;
     if (same_equations || work.equations.error() <= NewtonOptions{}.tolerance) {
+      const bool same_motion = state.time == state.history.time && rates_taken(mechanism, state);
       if (state.time != state.history.time) remember(state);
+      if (!same_motion) state.stage = Stage::closed;
       return describe(work, report);
     }
   }

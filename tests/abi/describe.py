@@ -14,8 +14,8 @@ import tempfile
 
 from header import Header
 
-HEAD = """# The ABI of libkoppel on x86-64 and other machines with 8-byte pointers. Made by tests/abi/describe.py --write; a test
-# fails where the headers say otherwise. Fields and functions are only ever added at the end.
+HEAD = """# The ABI of libkoppel on x86-64 and other machines with 8-byte pointers. Made by tests/abi/describe.py --write; a
+# test fails where the headers say otherwise. Fields and functions are only ever added at the end.
 """
 
 
@@ -57,7 +57,8 @@ def main():
         path.write_text(found, encoding="utf-8")
         return 0
     kept = path.read_text(encoding="utf-8")
-    difference = "\n".join(difflib.unified_diff(kept.splitlines(), found.splitlines(), path.name, "headers", lineterm=""))
+    lines = difflib.unified_diff(kept.splitlines(), found.splitlines(), path.name, "headers", lineterm="")
+    difference = "\n".join(lines)
     if difference:
         print(difference)
         print(f"The ABI changed. If that is meant: {sys.argv[0]} {include} {description} {compiler} --write")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """What the shared objects export: exports.py INCLUDE LIBRARY PLUGIN_FOLDER CALLER
 
-The library exports the functions that koppel.h declares and nothing else, a plugin its entry and nothing else, and the C
-program CALLER calls every function.
+The library exports the functions that koppel.h declares and nothing else, a plugin its entry and nothing else, and the
+C program CALLER calls every function.
 """
 
 import pathlib

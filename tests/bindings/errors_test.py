@@ -73,7 +73,8 @@ class Names(unittest.TestCase):
         self.state = self.mechanism.state()
 
     def test_that_are_unknown_are_corrected(self):
-        for attempt in (lambda: self.state.set_input("wheel.zz", 0.0), lambda: self.mechanism.unit("input", "wheel.zz")):
+        for attempt in (lambda: self.state.set_input("wheel.zz", 0.0),
+                        lambda: self.mechanism.unit("input", "wheel.zz")):
             with self.assertRaises(koppel.Error) as caught:
                 attempt()
             self.assertEqual(caught.exception.code, "E0901")

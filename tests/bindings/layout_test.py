@@ -55,7 +55,8 @@ class Layout(unittest.TestCase):
                               ("SOLVER", structs.SOLVERS), ("METHOD", structs.METHODS)):
             for number, name in enumerate(names):
                 self.assertEqual(values[f"{prefix}_{name.upper().replace(' ', '_')}"], number)
-        self.assertEqual(structs.KINDS, {name[5:].lower(): value for name, value in values.items() if name[:5] == "KIND_"})
+        kinds = {name[5:].lower(): value for name, value in values.items() if name.startswith("KIND_")}
+        self.assertEqual(structs.KINDS, kinds)
         for name in ("OK", "REDUNDANT", "BRANCH_CHANGED", "NEAR_SINGULAR", "LIMIT_EXCEEDED", "Q", "V", "A"):
             self.assertEqual(getattr(structs, name), values[name])
         versions = re.findall(r"^define KOPPEL_ABI_(?:MAJOR|MINOR) (\d+)u$", ABI, flags=re.M)

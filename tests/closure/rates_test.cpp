@@ -131,5 +131,20 @@ TEST(IsolatedFreedom, GetsTheRateOfLeastNorm) {
   EXPECT_LE(std::abs(spin.col(0).normalized().dot(a)), 1e-13 * a.norm());
 }
 
+// A position may be kept while its rates are not: the drive has taken another speed.
+TEST(ClosedAgain, WithOtherRatesOfTheInputsKeepsThePositionAndAsksForVelocities) {
+  Closed closed(shipped("4bar"));
+  ASSERT_GE(closed.move(0.1), 0);
+  const Eigen::VectorXd q = closed.state.q;
+  ASSERT_GE(closed.close(), 0);
+  EXPECT_EQ(closed.state.stage, Stage::accelerations);
+  closed.state.input_rate[0] += 1.0;
+  ASSERT_GE(closed.close(), 0);
+  EXPECT_TRUE(same_bits(closed.state.q, q));
+  EXPECT_EQ(accelerations(closed.work, closed.state), KOPPEL_INVALID_ARGUMENT);
+  EXPECT_EQ(velocities(closed.work, closed.state), KOPPEL_OK);
+  EXPECT_EQ(accelerations(closed.work, closed.state), KOPPEL_OK);
+}
+
 }  // namespace
 }  // namespace koppel::test

@@ -144,8 +144,7 @@ void expect_near(const VectorXd& given, const VectorXd& fine, const VectorXd& co
   EXPECT_LE((given - fine).lpNorm<Eigen::Infinity>(), truncation + rounding) << what;
 }
 
-class Rates : public testing::TestWithParam<std::string> {
- protected:
+struct Rates : testing::TestWithParam<std::string> {
   const Model model{shipped_scene(GetParam())};
 
   /// Calls check(motion, time) at several times of the run.

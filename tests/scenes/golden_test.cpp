@@ -29,7 +29,7 @@ class Position {
   Position(const Model& model, const Case& described) : model_(model), case_(described), motion_(model) {}
 
   Outcome close() {
-    const Outcome outcome = case_.start ? close_once() : lead();
+    Outcome outcome = case_.start ? close_once() : lead();
     if (!outcome) return outcome;
     for (const Setting& input : case_.inputs) {
       motion_.set_input(input_of(input), input.values.front(), speed_of(input.coordinate));
@@ -173,8 +173,7 @@ TEST_P(GoldenCase, IsMet) {
 INSTANTIATE_TEST_SUITE_P(Scenes, GoldenCase, testing::ValuesIn(golden().cases),
                          [](const auto& test) { return test.param.name; });
 
-class GoldenFacts : public testing::TestWithParam<Facts> {
- protected:
+struct GoldenFacts : testing::TestWithParam<Facts> {
   const Model model{golden().text(GetParam().scene)};
 };
 

@@ -26,8 +26,7 @@ const std::multimap<std::string, std::string>& free_spins() {
 
 using Names = std::map<std::string, std::string>;
 
-class SameMotion : public testing::TestWithParam<std::string> {
- protected:
+struct SameMotion : testing::TestWithParam<std::string> {
   const std::string text = shipped_scene(GetParam());
   const Model original{text};
 

@@ -6,8 +6,7 @@
 namespace koppel::test {
 namespace {
 
-class WholeRun : public testing::TestWithParam<std::string> {
- protected:
+struct WholeRun : testing::TestWithParam<std::string> {
   const Model model{shipped_scene(GetParam())};
 };
 

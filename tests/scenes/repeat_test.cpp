@@ -8,8 +8,7 @@
 namespace koppel::test {
 namespace {
 
-class Bits : public testing::TestWithParam<std::string> {
- protected:
+struct Bits : testing::TestWithParam<std::string> {
   const Model model{shipped_scene(GetParam())};
 };
 

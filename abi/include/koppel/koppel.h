@@ -274,8 +274,8 @@ KOPPEL_EXPORT koppel_status koppel_analyse(const koppel_state* state, koppel_wor
 
 /* ------------------------------------------------------------------------------------------------ results */
 
-/* what: KOPPEL_KIND_BODY or KOPPEL_KIND_FRAME. poses: 12 numbers each, in the world. All `bodies` or all `frames` of
- * them. */
+/* what: KOPPEL_KIND_BODY or KOPPEL_KIND_FRAME. poses: 12 numbers each, in the world, of all `bodies` or all `frames`.
+ * count, here and below: of numbers, so 12 times the bodies. */
 KOPPEL_EXPORT koppel_status koppel_poses(const koppel_state* state, koppel_work* work, int32_t what, double* poses,
                                          size_t count);
 /* Twists in world axes, each at its own frame's origin: 6 numbers each. */

@@ -98,7 +98,8 @@ def library():
             return loaded
         except (OSError, AttributeError) as fault:
             faults.append(f"{file}: {fault}")
-    raise ImportError("libkoppel.so was not found; build koppel, or set KOPPEL_LIBRARY to the file\n" + "\n".join(faults))
+    advice = "libkoppel.so was not found; build koppel, or set KOPPEL_LIBRARY to the file"
+    raise ImportError("\n".join([advice, *faults]))
 
 
 def call(name, *arguments):

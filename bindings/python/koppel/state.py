@@ -121,7 +121,8 @@ class State(Handle):
 
     def set_input(self, name, value, rate=0.0, acceleration=0.0):
         """Sets an input by hand, until the next set_time or move. Error: no such input, or not finite."""
-        call_plain("koppel_state_set_input", self.handle, self.mechanism.index("input", name), value, rate, acceleration)
+        index = self.mechanism.index("input", name)
+        call_plain("koppel_state_set_input", self.handle, index, value, rate, acceleration)
 
     def close(self, method="auto", max_iterations=0, tolerance=0.0):
         """Closes the loops with the inputs held; returns the Report. method: "auto", "newton" or "ceres". Error: no
@@ -163,7 +164,7 @@ class State(Handle):
         return self._each("koppel_frame_accelerations", kind, 6)
 
     def jacobian(self, name, kind="body"):
-        """(6, rates): geometric Jacobian, world axes, at its origin; columns of joints at which a loop is cut are zero."""
+        """(6, rates): geometric Jacobian, world axes, at its origin; columns of cut joints are zero."""
         return self._jacobian(name, kind)[0]
 
     def jacobian_rate(self, name, kind="body"):

@@ -44,7 +44,8 @@ Struct read_struct(const Struct* from) {
 }
 
 /// Like fail(), but allocates nothing.
-koppel_status fail_without_memory(koppel_error* out, koppel_status status, const char* code, const char* message) noexcept;
+koppel_status fail_without_memory(koppel_error* out, koppel_status status, const char* code,
+                                  const char* message) noexcept;
 
 /// Runs the body of an exported function; whatever it throws becomes a status.
 template <typename Body>

@@ -40,7 +40,8 @@ spdlog::level::level_enum spdlog_level(std::int32_t level) {
 
 Logger make_logger(const koppel_engine_options& options) {
   if (options.log == nullptr) return silent_logger();
-  auto logger = std::make_shared<spdlog::logger>("koppel", std::make_shared<HostSink>(options.log, options.log_context));
+  auto logger =
+      std::make_shared<spdlog::logger>("koppel", std::make_shared<HostSink>(options.log, options.log_context));
   logger->set_level(spdlog_level(options.log_level));
   return logger;
 }

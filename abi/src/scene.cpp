@@ -34,8 +34,8 @@ koppel_status koppel_scene_from_text(koppel_engine* engine, const char* text, si
       return koppel::invalid_argument("engine, text or scene is NULL", error);
     }
     koppel::Diagnostics findings;
-    auto read = koppel::read_scene_text(*engine->registry, {text, length}, directory == nullptr ? "" : directory,
-                                        findings);
+    auto read =
+        koppel::read_scene_text(*engine->registry, {text, length}, directory == nullptr ? "" : directory, findings);
     return deliver(*engine, std::move(read), findings, diagnostics, scene, error);
   });
 }

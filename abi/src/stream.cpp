@@ -1,6 +1,5 @@
-#include "stream/publisher.hpp"
-
 #include "boundary.hpp"
+#include "stream/publisher.hpp"
 
 namespace {
 
@@ -64,8 +63,7 @@ koppel_status koppel_stream_publish(koppel_stream* stream, const koppel_state* s
                                     const koppel_report* report) {
   return koppel::guarded(nullptr, [&]() -> koppel_status {
     if (stream == nullptr || state == nullptr || state->mechanism != stream->mechanism) return KOPPEL_INVALID_ARGUMENT;
-    const koppel_status posed =
-        koppel_poses(state, work, KOPPEL_KIND_BODY, stream->poses.data(), stream->poses.size());
+    const koppel_status posed = koppel_poses(state, work, KOPPEL_KIND_BODY, stream->poses.data(), stream->poses.size());
     if (posed < 0) return posed;
     koppel::Snapshot snapshot;
     snapshot.time = state->state.time;

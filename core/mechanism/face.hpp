@@ -1,6 +1,6 @@
-// The implicit face of a joint: the equations that the relative pose of its two frames must satisfy, without the joint's
-// coordinates; used where a loop is cut. Derived from the motions of a product joint by what they are, never by name:
-// translations along fixed directions, followed by rotations about the common origin.
+// The implicit face of a joint: the equations that the relative pose of its two frames must satisfy, without the
+// joint's coordinates; used where a loop is cut. Derived from the motions of a product joint by what they are, never by
+// name: translations along fixed directions, followed by rotations about the common origin.
 #pragma once
 
 #include <optional>
@@ -18,8 +18,8 @@ inline constexpr std::size_t max_face_rows = 6;
 /// How the outlet may turn against the inlet.
 enum class Turning { none, axis, cross, free };
 
-/// Equations of a relative pose. Residuals are metres (along directions fixed in the inlet frame) and radians (angle times
-/// axis, so that a frame turned by half a turn is as far from closed as it can be).
+/// Equations of a relative pose. Residuals are metres (along directions fixed in the inlet frame) and radians (angle
+/// times axis, so that a frame turned by half a turn is as far from closed as it can be).
 class Face {
  public:
   /// The face of a joint; nothing if its motion is not of that kind and its plugin offers none.

@@ -1,5 +1,6 @@
 // A joint as core evaluates it: a program of elementary motions, or the callbacks of its plugin. The same steps serve
-// forward kinematics (where the near frame stands somewhere in the world) and a joint on its own (near frame = identity).
+// forward kinematics (where the near frame stands somewhere in the world) and a joint on its own (near frame =
+// identity).
 #pragma once
 
 #include <cstdint>
@@ -65,8 +66,8 @@ struct JointBlock {
   CoordinateDescription described;
 };
 
-/// The relative velocity [angular; linear] of the outlet against the inlet, in outlet axes at the outlet origin, has the
-/// columns of S as basis.
+/// The relative velocity [angular; linear] of the outlet against the inlet, in outlet axes at the outlet origin, has
+/// the columns of S as basis.
 using Subspace = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, max_joint_rates>;
 
 /// A joint ready for evaluation. Const while evaluating.
@@ -90,8 +91,8 @@ class Joint {
   /// The size of the mechanism, from which steps of numerical derivatives along lengths are taken.
   void set_length(double length) { line_step_ = angle_difference_step * length; }
 
-  /// Moves `frame` from the near to the far side of the joint (near = inlet, or outlet if reversed) and writes nv columns.
-  /// False: the plugin failed or returned something not finite.
+  /// Moves `frame` from the near to the far side of the joint (near = inlet, or outlet if reversed) and writes nv
+  /// columns. False: the plugin failed or returned something not finite.
   bool step(const double* joint_q, bool reversed, Pose& frame, Column* columns) const;
 
   /// Carries a motion over the joint, given the columns of step() and rates and accelerations of the coordinates.
@@ -110,7 +111,8 @@ class Joint {
   /// (dS/dt) v: what the relative acceleration has beyond S a.
   bool bias(const double* joint_q, const double* joint_v, Vector6& bias) const;
 
-  /// Plugin-given implicit face: residual and derivative (6 columns) of a relative pose. Only if type->rows is not empty.
+  /// Plugin-given implicit face: residual and derivative (6 columns) of a relative pose. Only if type->rows is not
+  /// empty.
   bool plugin_residual(const Pose& pose, double* residual, double* jacobian) const;
   bool plugin_coordinates(const Pose& pose, double* joint_q) const;
 

@@ -15,17 +15,18 @@ namespace koppel {
 struct Kinematics {
   explicit Kinematics(const Mechanism& mechanism);
 
-  std::vector<Pose> poses;          ///< of each node in the world
-  std::vector<Pose> near, far;      ///< of each step: the joint's two frames in the world
-  std::vector<Column> columns;      ///< of each rate (those of the tree)
-  std::vector<FrameMotion> motions; ///< of each node, taken at its origin
-  JointId culprit;                  ///< the joint whose plugin failed, if a function below returned false
+  std::vector<Pose> poses;           ///< of each node in the world
+  std::vector<Pose> near, far;       ///< of each step: the joint's two frames in the world
+  std::vector<Column> columns;       ///< of each rate (those of the tree)
+  std::vector<FrameMotion> motions;  ///< of each node, taken at its origin
+  JointId culprit;                   ///< the joint whose plugin failed, if a function below returned false
 };
 
 /// Poses of all nodes and the columns of all tree rates, at q.
 bool forward_position(const Mechanism& mechanism, const double* q, Kinematics& kinematics);
 
-/// Velocities and accelerations of all nodes, for given rates and their derivatives; after forward_position at the same q.
+/// Velocities and accelerations of all nodes, for given rates and their derivatives; after forward_position at the same
+/// q.
 bool forward_motion(const Mechanism& mechanism, const double* q, const double* v, const double* a,
                     Kinematics& kinematics);
 

@@ -44,11 +44,11 @@ enum class RelationKind { cut_joint, cut_body, constraint };
 /// A block of closure equations between two frames, or on coordinates.
 struct Relation {
   RelationKind kind = RelationKind::cut_joint;
-  JointId joint;                  ///< the joint that closes the loop
-  std::uint32_t constraint = 0;   ///< or the number of the constraint
+  JointId joint;                 ///< the joint that closes the loop
+  std::uint32_t constraint = 0;  ///< or the number of the constraint
   bool has_frames = true;
   Node node_a = 0, node_b = 0;
-  Pose pose_a, pose_b;            ///< the frames in their nodes
+  Pose pose_a, pose_b;  ///< the frames in their nodes
   std::uint32_t first_row = 0, rows = 0;
   std::vector<PathRate> path;     ///< rates that move b against a
   std::vector<PathRate> coupled;  ///< of a constraint: its coordinates (sign not used)
@@ -125,7 +125,7 @@ class Mechanism {
   Node nodes = 1;               ///< bodies and second halves of cut bodies
   std::vector<TreeStep> steps;  ///< parents before children
   std::vector<Relation> relations;
-  std::uint32_t loops = 0;  ///< the first relations; the others are constraints
+  std::uint32_t loops = 0;     ///< the first relations; the others are constraints
   bool explicit_time = false;  ///< some constraint depends on time
   std::uint32_t rows = 0;
   std::vector<double> row_scale;  ///< 1/length for rows in metres, 1 for all others

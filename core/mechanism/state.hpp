@@ -24,9 +24,9 @@ struct State {
 
   /// From the last two closed positions, for extrapolation.
   struct History {
-    double time = 0.0;               ///< of the position in q
-    double step = 0.0;               ///< from the one before; 0: there is none
-    Eigen::VectorXd acceleration;    ///< nv, of the one before
+    double time = 0.0;             ///< of the position in q
+    double step = 0.0;             ///< from the one before; 0: there is none
+    Eigen::VectorXd acceleration;  ///< nv, of the one before
   } history;
 };
 

@@ -7,7 +7,9 @@ namespace {
 
 template <std::size_t N>
 void copy_text(std::string_view from, char (&to)[N]) {
-  const std::size_t n = std::min(from.size(), N - 1);
+  std::size_t n = std::min(from.size(), N - 1);
+  // Cut between characters, never inside one.
+  while (n > 0 && n < from.size() && (static_cast<unsigned char>(from[n]) & 0xC0u) == 0x80u) --n;
   std::memcpy(to, from.data(), n);
   to[n] = '\0';
 }

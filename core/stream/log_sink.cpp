@@ -21,7 +21,7 @@ Result<std::unique_ptr<LogSink>> LogSink::open(const ProviderUrl& url) {
   Handle log(lcm_eventlog_create(url.path.c_str(), "w"), lcm_eventlog_destroy);
   if (!log) {
     Error error;
-    error.code = Code::stream_url;
+    error.code = Code::stream_failed;
     error.element = "stream " + url.text;
     error.message = "the log cannot be written: " + std::string(std::strerror(errno));
     error.advice = "name a file in a folder that exists and may be written to";

@@ -40,7 +40,7 @@ std::int64_t steady_clock();
 /// One thread of its own makes all calls of LCM. The host's functions may be called by one thread at a time.
 class Publisher {
  public:
-  /// stream_url, stream_name, invalid_argument (period).
+  /// stream_url, stream_name, invalid_argument (period), stream_failed (the log cannot be written).
   static Result<std::unique_ptr<Publisher>> open(StreamModel model, const StreamOptions& options, Logger logger);
   /// The same for a given sink; the options' URL is not used.
   static Result<std::unique_ptr<Publisher>> open(StreamModel model, const StreamOptions& options,

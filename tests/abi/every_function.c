@@ -1,5 +1,5 @@
 /* A host in strict C11 that calls every function of koppel.h on real scenes and checks what comes back.
- * every_function SCENES PLUGIN LOG: the folder of the shipped scenes, a plugin to load, a file to stream into. */
+ * every_function SCENE PLUGIN URL: the file of X-5LINK, a plugin to load, a log to stream into. */
 #include <koppel/koppel.h>
 #include <math.h>
 #include <stdio.h>
@@ -183,13 +183,11 @@ static void keeps_copies(const koppel_mechanism* mechanism, const koppel_state* 
 
 /* ---- streams */
 
-static void streams(const koppel_mechanism* mechanism, const koppel_state* state, koppel_work* work, const char* file) {
-  char url[1024];
+static void streams(const koppel_mechanism* mechanism, const koppel_state* state, koppel_work* work, const char* url) {
   SIZED(koppel_report, report);
   SIZED(koppel_stream_statistics, statistics);
   koppel_stream_options options = {.struct_size = sizeof options, .url = url, .name = "WHEEL"};
   koppel_stream* stream = NULL;
-  snprintf(url, sizeof url, "file://%s?mode=w", file);
   CHECK_OK(koppel_stream_open(mechanism, &options, &stream, NULL));
   for (int i = 0; i < 10; ++i) CHECK_OK(koppel_stream_publish(stream, state, work, &report));
   CHECK_OK(koppel_stream_event(stream, 1.0, KOPPEL_SEVERITY_NOTE, "at the bump stop"));
@@ -223,8 +221,7 @@ static void drives_by_its_own_function(koppel_engine* engine) {
   koppel_scene_destroy(scene);
 }
 
-static void uses_a_suspension(koppel_engine* engine, const char* scenes, const char* log) {
-  char file[1024];
+static void uses_a_suspension(koppel_engine* engine, const char* file, const char* url) {
   koppel_scene* scene = NULL;
   koppel_mechanism* mechanism = NULL;
   koppel_state* state = NULL;
@@ -232,7 +229,6 @@ static void uses_a_suspension(koppel_engine* engine, const char* scenes, const c
   SIZED(koppel_sizes, sizes);
   SIZED(koppel_error, error);
   size_t frame = MOST;
-  snprintf(file, sizeof file, "%s/5link.toml", scenes);
   CHECK_OK(koppel_scene_from_file(engine, file, NULL, &scene, &error));
   CHECK_OK(koppel_mechanism_compile(scene, NULL, &mechanism, &error));
   CHECK_OK(koppel_mechanism_sizes(mechanism, &sizes));
@@ -245,7 +241,7 @@ static void uses_a_suspension(koppel_engine* engine, const char* scenes, const c
   has_rates(state, work, frame, &sizes);
   moves(state, work, frame, &sizes);
   keeps_copies(mechanism, state, &sizes);
-  streams(mechanism, state, work, log);
+  streams(mechanism, state, work, url);
   koppel_work_destroy(work);
   koppel_state_destroy(state);
   koppel_mechanism_destroy(mechanism);

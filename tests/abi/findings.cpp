@@ -16,7 +16,7 @@ TEST(Texts, AreCutToTheBufferAndEnded) {
     std::size_t needed = 0;
     ASSERT_EQ(koppel_mechanism_explain(host.mechanism.get(), buffer.data(), size, &needed), KOPPEL_OK);
     EXPECT_EQ(needed, whole.size() + 1);
-    EXPECT_EQ(std::string(buffer.c_str()), whole.substr(0, size - 1));
+    EXPECT_STREQ(buffer.c_str(), whole.substr(0, size - 1).c_str());
     EXPECT_EQ(buffer.find_first_not_of('#', std::min(size, whole.size() + 1)), std::string::npos);
   }
 }

@@ -1,8 +1,10 @@
 // A host for the tests of the C ABI: a scene on its way to a state that can move.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -83,17 +85,20 @@ inline Reading read(const Host& host) { return read(host.state.get(), host.sizes
 template <typename Plain>
 class Output {
  public:
-  Output() { std::memset(static_cast<void*>(&value), pattern, sizeof value); }
+  Output() {
+    const auto bytes = std::as_writable_bytes(std::span(&value, 1));
+    std::fill(bytes.begin(), bytes.end(), pattern);
+  }
   Plain* operator&() { return &value; }
   bool untouched() const {
-    const Output fresh;
-    return std::memcmp(&value, &fresh.value, sizeof value) == 0;
+    const auto bytes = std::as_bytes(std::span(&value, 1));
+    return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == pattern; });
   }
 
   Plain value;
 
  private:
-  static constexpr int pattern = 0x5a;
+  static constexpr std::byte pattern{0x5a};
 };
 
 }  // namespace koppel::test

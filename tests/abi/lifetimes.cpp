@@ -101,6 +101,7 @@ TEST(Threads, OfOneMechanismGiveTheSameBits) {
     const std::vector<Reading> alone = run(mechanism, host.sizes, 60);
     std::vector<std::vector<Reading>> together(4);
     std::vector<std::thread> threads;
+    threads.reserve(together.size());
     for (auto& readings : together) {
       threads.emplace_back([&] { readings = run(mechanism, host.sizes, 60); });
     }

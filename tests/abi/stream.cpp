@@ -85,12 +85,13 @@ TEST_F(Streams, TakeStatesOfTheirMechanismOnly) {
 }
 
 TEST_F(Streams, WithABadUrlNameOrPeriodAreRefused) {
-  for (const char* url : {"carrier-pigeon://", "no url", "file://", "memq://somewhere", "udpm://1.2.3.4:5",
-                          "file:///nowhere/at/all.lcm?mode=w"}) {
+  for (const char* url : {"carrier-pigeon://", "no url", "file://", "memq://somewhere", "udpm://1.2.3.4:5"}) {
     EXPECT_EQ(open(url), KOPPEL_INVALID_ARGUMENT) << url;
     EXPECT_STREQ(error.code, "E0801") << url;
     EXPECT_STRNE(error.advice, "") << url;
   }
+  EXPECT_EQ(open("file:///nowhere/at/all.lcm?mode=w"), KOPPEL_IO);
+  EXPECT_STREQ(error.code, "E0802");
   EXPECT_EQ(open("memq://", "a name"), KOPPEL_INVALID_ARGUMENT);
   EXPECT_STREQ(error.code, "E0803");
   EXPECT_EQ(open("memq://", nullptr, -1.0), KOPPEL_INVALID_ARGUMENT);

@@ -42,7 +42,7 @@ void ceres_cold(benchmark::State& timer, const Run& run) {
   State state = start;
   CloseOptions options;
   options.method = Method::ceres;
-  for (auto _ : timer) {
+  while (timer.KeepRunning()) {
     state = start;
     Report report;
     if (close(work, state, options, report) < 0) return timer.SkipWithError("the start of the scene does not close");

@@ -159,7 +159,7 @@ TEST(Log, RefusesFilesThatCannotBeWritten) {
   for (const char* path : {"/nowhere/at/all.lcm", "/tmp"}) {
     const auto publisher = open("file://" + std::string(path) + "?mode=w");
     ASSERT_FALSE(publisher) << path;
-    EXPECT_EQ(publisher.error().code, Code::stream_url);
+    EXPECT_EQ(publisher.error().code, Code::stream_failed);
     EXPECT_NE(publisher.error().message.find("cannot be written"), std::string::npos);
     EXPECT_FALSE(publisher.error().advice.empty());
   }

@@ -244,7 +244,7 @@ typedef struct koppel_close_options {
 } koppel_close_options;
 
 /* Closes the loops with the inputs held at their values. A state that is closed stays as it is, bit for bit; if it
- * fails the state is untouched. options and report may be NULL. */
+ * fails the state is untouched, and the report tells how near it came. options and report may be NULL. */
 KOPPEL_EXPORT koppel_status koppel_close(koppel_state* state, koppel_work* work, const koppel_close_options* options,
                                          koppel_report* report, koppel_error* error);
 /* Rates of a closed state from the rates of its inputs; free motions get the least norm. */

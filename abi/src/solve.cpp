@@ -17,7 +17,8 @@ std::string number(double x) {
 }
 
 /// What stands in the way, in words; texts are made only now that somebody asks.
-koppel_status explain_failure(koppel_status status, const koppel::Work& work, const koppel::State& state,
+/// `time`: that was asked for. `report`: of the closure, if there was one.
+koppel_status explain_failure(koppel_status status, const koppel::Work& work, double time, const koppel::Report* report,
                               koppel_error* error) {
   const koppel::Mechanism& m = *work.mechanism;
   koppel::Error e = koppel::make_error(Code::internal, "mechanism " + m.name, {});
@@ -25,11 +26,9 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, co
     case KOPPEL_NOT_CLOSED:
     case KOPPEL_RETRY: {
       e.code = status == KOPPEL_RETRY ? Code::retry_smaller : Code::not_closed;
-      Eigen::Index worst = 0;
-      e.message = "no closed position found at time " + number(state.time) + " s";
-      if (work.equations.residual.size() > 0) {
-        const double off = work.equations.residual.cwiseAbs().maxCoeff(&worst);
-        e.message += ": `" + m.equation_names[static_cast<std::size_t>(worst)].name + "` stays open by " + number(off) +
+      e.message = "no closed position found at time " + number(time) + " s";
+      if (report != nullptr && std::isfinite(report->residual)) {
+        e.message += ": `" + m.equation_names[report->open_row].name + "` stays open by " + number(report->residual) +
                      " (radians, or metres over the length " + number(m.length) + " m)";
       }
       e.advice = status == KOPPEL_RETRY ? "move the inputs in smaller steps"
@@ -39,7 +38,7 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, co
     }
     case KOPPEL_SINGULAR:
       e.code = Code::inputs_inconsistent;
-      e.message = "the inputs ask for rates that are impossible at time " + number(state.time) + " s";
+      e.message = "the inputs ask for rates that are impossible at time " + number(time) + " s";
       e.advice =
           "this is a limit position, or there are more inputs than freedoms: stop before it, or drive another "
           "coordinate";
@@ -126,7 +125,7 @@ koppel_status koppel_close(koppel_state* state, koppel_work* work, const koppel_
     koppel::Report result;
     const koppel_status status = koppel::close(work->work, state->state, options_of(given), result);
     write_report(*state->mechanism, result, report);
-    return status >= 0 ? status : explain_failure(status, work->work, state->state, error);
+    return status >= 0 ? status : explain_failure(status, work->work, state->state.time, &result, error);
   });
 }
 
@@ -134,7 +133,7 @@ koppel_status koppel_velocities(koppel_state* state, koppel_work* work, koppel_e
   return koppel::guarded(error, [&]() -> koppel_status {
     if (!fit(state, work)) return misfit(error);
     const koppel_status status = koppel::velocities(work->work, state->state);
-    return status >= 0 ? status : explain_failure(status, work->work, state->state, error);
+    return status >= 0 ? status : explain_failure(status, work->work, state->state.time, nullptr, error);
   });
 }
 
@@ -142,7 +141,7 @@ koppel_status koppel_accelerations(koppel_state* state, koppel_work* work, koppe
   return koppel::guarded(error, [&]() -> koppel_status {
     if (!fit(state, work)) return misfit(error);
     const koppel_status status = koppel::accelerations(work->work, state->state);
-    return status >= 0 ? status : explain_failure(status, work->work, state->state, error);
+    return status >= 0 ? status : explain_failure(status, work->work, state->state.time, nullptr, error);
   });
 }
 
@@ -154,7 +153,7 @@ koppel_status koppel_move(koppel_state* state, koppel_work* work, double time, k
     koppel::Report result;
     const koppel_status status = koppel::move(work->work, state->state, time, result);
     write_report(*state->mechanism, result, report);
-    return status >= 0 ? status : explain_failure(status, work->work, state->state, error);
+    return status >= 0 ? status : explain_failure(status, work->work, time, &result, error);
   });
 }
 
@@ -164,7 +163,7 @@ koppel_status koppel_analyse(const koppel_state* state, koppel_work* work, koppe
     if (!fit(state, work) || analysis == nullptr) return misfit(error);
     koppel::Analysis result;
     if (!koppel::analyse(work->work, state->state, result)) {
-      return explain_failure(KOPPEL_PLUGIN, work->work, state->state, error);
+      return explain_failure(KOPPEL_PLUGIN, work->work, state->state.time, nullptr, error);
     }
     koppel_analysis out{};
     out.mobility_count = result.mobility_count;

@@ -15,7 +15,8 @@ Table::Table(const std::string& file, const std::vector<std::string>& columns) :
 void Table::row(const std::vector<double>& values) {
   std::array<char, 32> digits{};  // the shortest exact text of a double has at most 24 characters
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), values[i]).ptr;
+    // The sum turns a negative zero into zero and leaves every other number as it is.
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), values[i] + 0.0).ptr;
     if (i > 0) out_.put(',');
     out_.write(digits.data(), end - digits.data());
   }

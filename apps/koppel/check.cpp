@@ -1,35 +1,30 @@
 // koppel check SCENE
-#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "koppel/at_start.hpp"
 #include "koppel/command.hpp"
 
 namespace koppel::app {
 namespace {
 
-/// What can be said of a scene that has been compiled: whether it closes at time 0, and the counts there.
-struct Closure {
-  koppel_status status = KOPPEL_OK;
-  koppel_error error = sized<koppel_error>();
-  koppel_report report = sized<koppel_report>();
-  koppel_analysis analysis = sized<koppel_analysis>();
-
-  bool closed() const { return status >= 0; }
-};
-
-Closure close_at_start(const Model& model) {
-  Closure closure;
-  const Motion motion = start(model);
-  koppel_state* state = motion.state.get();
-  koppel_work* work = motion.work.get();
-  closure.status = koppel_state_set_time(state, 0.0, &closure.error);
-  if (closure.closed()) closure.status = koppel_close(state, work, nullptr, &closure.report, &closure.error);
-  // The counts are told of an open position too: they may be the reason.
-  const koppel_status analysed = koppel_analyse(state, work, &closure.analysis, nullptr);
-  if (closure.closed() && analysed < 0) closure.status = analysed;
-  return closure;
+/// More inputs than freedoms: they may fit here and now, but hardly everywhere.
+std::optional<koppel_error> too_many_inputs(const Model& model, const AtStart& start) {
+  const auto inputs = static_cast<std::int64_t>(model.sizes().inputs);
+  if (!start.analysis || inputs <= start.analysis->mobility_rank) return std::nullopt;
+  const int freedoms = start.analysis->mobility_rank;
+  auto finding = sized<koppel_error>();
+  finding.severity = KOPPEL_SEVERITY_WARNING;
+  std::snprintf(finding.code, sizeof finding.code, "W0703");
+  std::snprintf(finding.message, sizeof finding.message, "%lld input%s, but only %d freedom%s%s",
+                static_cast<long long>(inputs), inputs == 1 ? "" : "s", freedoms, freedoms == 1 ? "" : "s",
+                start.closed ? "" : " where the start values stand");
+  std::snprintf(finding.advice, sizeof finding.advice, "drive no more coordinates than the mechanism has freedoms");
+  return finding;
 }
 
 void print_mobility(const koppel_analysis& analysis) {
@@ -40,18 +35,17 @@ void print_mobility(const koppel_analysis& analysis) {
   std::puts("");
 }
 
-void print_text(const Model& model, const Closure& closure) {
+void print_text(const Model& model, const AtStart& start) {
   const koppel_sizes sizes = model.sizes();
   const std::string title = model.name(KOPPEL_KIND_SCENE, 1);
   std::printf("%s%s%s\n", model.name(KOPPEL_KIND_SCENE, 0).c_str(), title.empty() ? "" : ": ", title.c_str());
   std::printf("elements    %u bodies with the ground, %u joints, %u constraints, %u inputs, %u recorded columns\n",
               sizes.bodies, sizes.joints, sizes.constraints, sizes.inputs, sizes.records);
   std::printf("loops       %u, with %u equations for %u unknown rates\n", sizes.loops, sizes.equations, sizes.unknowns);
-  print_mobility(closure.analysis);
-  if (closure.closed()) {
+  if (start.analysis) print_mobility(*start.analysis);
+  if (start.closed) {
     std::printf("at t = 0    closed: residual %.1e, coordinates within %.1e, %u iterations, condition %.3g\n",
-                closure.report.residual, closure.report.coordinate_error, closure.report.iterations,
-                closure.report.condition);
+                start.report.residual, start.report.coordinate_error, start.report.iterations, start.report.condition);
   } else {
     std::puts("at t = 0    not closed");
   }
@@ -62,32 +56,26 @@ nlohmann::ordered_json to_json(const Model& model) {
   document["closed"] = nullptr;
   document["mobility"] = nullptr;
   document["loops"] = nullptr;
-  document["diagnostics"] = nlohmann::ordered_json::array();
-  for (const koppel_error& finding : model.findings()) document["diagnostics"].push_back(json_of(finding));
-  if (model.outcome != Exit::fine && document["diagnostics"].empty()) {
-    document["diagnostics"].push_back(json_of(model.error));
-  }
+  document["diagnostics"] = json_of_findings(model);
   return document;
 }
 
-void add_closure(nlohmann::ordered_json& document, const Model& model, const Closure& closure) {
+void add_start(nlohmann::ordered_json& document, const Model& model, const AtStart& start) {
   const koppel_sizes sizes = model.sizes();
   document["scene"] = model.name(KOPPEL_KIND_SCENE, 0);
-  document["closed"] = closure.closed();
+  document["closed"] = start.closed;
   document["loops"] = sizes.loops;
   document["bodies"] = sizes.bodies;
   document["joints"] = sizes.joints;
   document["constraints"] = sizes.constraints;
   document["inputs"] = sizes.inputs;
   document["unknowns"] = sizes.unknowns;
-  add_counts(document, sizes, closure.analysis);
-  if (closure.closed()) {
-    document["residual"] = closure.report.residual;
-    document["coordinate_error"] = closure.report.coordinate_error;
-    document["condition"] = closure.report.condition;
-    document["iterations"] = closure.report.iterations;
-  } else {
-    document["diagnostics"].push_back(json_of(closure.error));
+  add_counts(document, sizes, start.analysis);
+  if (start.closed) {
+    document["residual"] = start.report.residual;
+    document["coordinate_error"] = start.report.coordinate_error;
+    document["condition"] = start.report.condition;
+    document["iterations"] = start.report.iterations;
   }
 }
 
@@ -99,15 +87,19 @@ Exit check(const std::string& file, bool json, bool verbose) {
     if (json) print_json(document);
     return model.outcome;
   }
-  const Closure closure = close_at_start(model);
+  const AtStart start = at_start(model);
+  std::vector<koppel_error> findings;
+  if (const auto finding = too_many_inputs(model, start)) findings.push_back(*finding);
+  if (start.status < 0) findings.push_back(start.error);
   if (json) {
-    add_closure(document, model, closure);
+    add_start(document, model, start);
+    for (const koppel_error& finding : findings) document["diagnostics"].push_back(json_of(finding));
     print_json(document);
   } else {
-    print_text(model, closure);
-    if (!closure.closed()) print_error(closure.error);
+    print_text(model, start);
+    for (const koppel_error& finding : findings) print_error(finding);
   }
-  return exit_of(closure.status);
+  return exit_of(start.status);
 }
 
 }  // namespace
@@ -117,10 +109,10 @@ void add_check(CLI::App& app, const Common& common, Exit& outcome) {
     std::string scene;
     bool json = false;
   };
-  CLI::App* command =
-      app.add_subcommand("check", "Find every fault of a scene, count its freedoms and loops, close it once");
+  CLI::App* command = app.add_subcommand(
+      "check", "Find every fault of a scene, count its freedoms and loops, close it at time 0 with its rates");
   auto options = std::make_shared<Options>();
-  command->add_option("SCENE", options->scene, "The scene file")->required()->type_name("");
+  command->add_option("SCENE", options->scene, "The scene file")->required()->check(not_empty)->type_name("");
   command->add_flag("--json", options->json, "Print the result as JSON");
   command->callback([options, &common, &outcome] { outcome = check(options->scene, options->json, common.verbose); });
 }

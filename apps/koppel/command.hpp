@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <optional>
+#include <string>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -30,14 +32,31 @@ inline nlohmann::ordered_json json_of(const koppel_error& error) {
           {"column", error.column}, {"message", error.message}, {"advice", error.advice}, {"element", error.element}};
 }
 
+/// What was found in reading and compiling, as it stands in --json.
+inline nlohmann::ordered_json json_of_findings(const Model& model) {
+  auto list = nlohmann::ordered_json::array();
+  for (const koppel_error& finding : model.findings()) list.push_back(json_of(finding));
+  if (model.outcome != Exit::fine && list.empty()) list.push_back(json_of(model.error));
+  return list;
+}
+
 /// Mobility and ranks as they stand in --json. jacobian_rank is that of the loop equations in the rates of all joints,
 /// so that it does not depend on where the loops are cut; equations and rank are those of the closure as it is solved.
-inline void add_counts(nlohmann::ordered_json& document, const koppel_sizes& sizes, const koppel_analysis& analysis) {
-  document["mobility"] = {{"count", analysis.mobility_count}, {"rank", analysis.mobility_rank}};
-  document["jacobian_rank"] = static_cast<std::int64_t>(sizes.rates) - analysis.mobility_rank;
-  document["equations"] = analysis.equations;
-  document["rank"] = analysis.rank;
+/// Without an analysis they are null.
+inline void add_counts(nlohmann::ordered_json& document, const koppel_sizes& sizes,
+                       const std::optional<koppel_analysis>& analysis) {
+  if (!analysis) {
+    for (const char* key : {"mobility", "jacobian_rank", "equations", "rank"}) document[key] = nullptr;
+    return;
+  }
+  document["mobility"] = {{"count", analysis->mobility_count}, {"rank", analysis->mobility_rank}};
+  document["jacobian_rank"] = static_cast<std::int64_t>(sizes.rates) - analysis->mobility_rank;
+  document["equations"] = analysis->equations;
+  document["rank"] = analysis->rank;
 }
+
+/// A check for options that name something.
+inline std::string not_empty(const std::string& text) { return text.empty() ? "must not be empty" : ""; }
 
 /// Prints a document on standard output. Texts from files that are not UTF-8 do not stop it.
 inline void print_json(const nlohmann::ordered_json& document) {

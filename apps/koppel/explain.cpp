@@ -10,6 +10,13 @@
 namespace koppel::app {
 namespace {
 
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+/// text: in capitals.
 bool looks_like_code(const std::string& text) {
   const std::size_t digits = !text.empty() && (text[0] == 'E' || text[0] == 'W' || text[0] == 'N') ? 1 : 0;
   return text.size() > digits && std::all_of(text.begin() + static_cast<std::ptrdiff_t>(digits), text.end(),
@@ -45,9 +52,13 @@ void add_explain(CLI::App& app, const Common& common, Exit& outcome) {
   CLI::App* command = app.add_subcommand(
       "explain", "Tell what was built from a scene and how its loops are closed, or what a finding's code means");
   auto subject = std::make_shared<std::string>();
-  command->add_option("SUBJECT", *subject, "A scene file, or a code such as E0312")->required()->type_name("");
+  command->add_option("SUBJECT", *subject, "A scene file, or a code such as E0304")
+      ->required()
+      ->check(not_empty)
+      ->type_name("");
   command->callback([subject, &common, &outcome] {
-    outcome = looks_like_code(*subject) ? explain_code(*subject) : explain_scene(*subject, common.verbose);
+    const std::string code = upper(*subject);
+    outcome = looks_like_code(code) ? explain_code(code) : explain_scene(*subject, common.verbose);
   });
 }
 

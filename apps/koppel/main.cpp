@@ -15,15 +15,15 @@ constexpr const char* description =
 
 constexpr const char* footer =
     "Examples:\n"
-    "  koppel check fourbar.toml                       find every fault; count freedoms; close once\n"
+    "  koppel check fourbar.toml                       find every fault; count freedoms; close at t = 0\n"
     "  koppel explain fourbar.toml                     how the loops are cut, equations and unknowns\n"
-    "  koppel explain E0312                            what a finding means\n"
+    "  koppel explain E0304                            what a finding means\n"
     "  koppel run fourbar.toml                         move the drives as the scene proposes\n"
     "  koppel run fourbar.toml --steps 1000 --csv -    and print the recorded columns\n"
     "  koppel run fourbar.toml --log run.lcm           and keep every state in an LCM log\n"
     "Exit codes:\n"
-    "  0 fine   1 the scene has errors   2 wrong usage   3 the mechanism did not close   4 a file, a stream or the\n"
-    "  system failed\n"
+    "  0 fine   1 the scene has errors   2 wrong usage   3 the mechanism did not close, or cannot move as asked\n"
+    "  4 a file, a stream or the system failed\n"
     "Results go to standard output, findings and progress to standard error.";
 
 std::string version_text() {

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "common/table.hpp"
+#include "koppel/at_start.hpp"
 #include "koppel/command.hpp"
 #include "koppel/summary.hpp"
 
@@ -29,6 +30,18 @@ struct Options {
   bool json = false;
 };
 
+/// What ended a run, with the step and the time where it did; they are null if there was no step yet.
+nlohmann::ordered_json json_of_failure(const koppel_error& error, std::optional<std::uint32_t> step, double time) {
+  nlohmann::ordered_json document = json_of(error);
+  document["step"] = nullptr;
+  document["time"] = nullptr;
+  if (step) {
+    document["step"] = *step;
+    document["time"] = time;
+  }
+  return document;
+}
+
 /// One run of one scene. Each part returns what went wrong, if anything; run() goes through all of them.
 class Run {
  public:
@@ -46,7 +59,10 @@ class Run {
     for (std::uint32_t i = 0; i <= steps_; ++i) {
       const double time = duration_ * i / steps_;
       if (options_.realtime) std::this_thread::sleep_until(begin + std::chrono::duration<double>(time));
-      if (!step(i, time)) break;
+      if (!step(i, time)) {
+        failed_step_ = i;
+        break;
+      }
       show_progress(i);
     }
     close();
@@ -59,7 +75,9 @@ class Run {
   void print(std::FILE* out) const {
     std::fprintf(out, "%s: %u of %u steps over %.6g s\n", model_.name(KOPPEL_KIND_SCENE, 0).c_str(), summary_.steps(),
                  steps_, duration_);
-    std::fprintf(out, "mobility    %d by rank, %d by count\n", analysis_.mobility_rank, analysis_.mobility_count);
+    if (analysis_) {
+      std::fprintf(out, "mobility    %d by rank, %d by count\n", analysis_->mobility_rank, analysis_->mobility_count);
+    }
     summary_.print(out);
     if (streamed_) {
       std::fprintf(out, "stream      %llu states sent, %llu dropped\n",
@@ -79,7 +97,11 @@ class Run {
       document["stream"] = {
           {"published", statistics_.published}, {"sent", statistics_.sent}, {"dropped", statistics_.dropped}};
     }
-    if (outcome_ != Exit::fine) document["error"] = json_of(error_);
+    document["diagnostics"] = json_of_findings(model_);
+    if (outcome_ != Exit::fine) {
+      document["diagnostics"].push_back(json_of(error_));
+      document["error"] = json_of_failure(error_, failed_step_, duration_ * failed_step_.value_or(0) / steps_);
+    }
     return document;
   }
 
@@ -107,11 +129,7 @@ class Run {
     stream_options.url = url.c_str();
     stream_options.name = options_.name.empty() ? nullptr : options_.name.c_str();
     koppel_stream* stream = nullptr;
-    // A URL that LCM refuses is no fault in the scene or in the usage of this program.
-    if (!good(koppel_stream_open(model_.mechanism.get(), &stream_options, &stream, &error_))) {
-      outcome_ = Exit::system;
-      return false;
-    }
+    if (!good(koppel_stream_open(model_.mechanism.get(), &stream_options, &stream, &error_))) return false;
     stream_.reset(stream);
     streamed_ = true;
     return true;
@@ -126,12 +144,15 @@ class Run {
     const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
     if (status < 0) {
       if (!options_.json) std::fprintf(stderr, "step %u, t = %.6g s:\n", index, time);
+      if (index == 0) analysis_ = at_start(model_).analysis;
       return good(status);
     }
     if (index == 0) {
       started_ = true;
       summary_.assemble(status, report, seconds);
-      if (!good(koppel_analyse(state, work, &analysis_, &error_))) return false;
+      auto analysis = sized<koppel_analysis>();
+      if (!good(koppel_analyse(state, work, &analysis, &error_))) return false;
+      analysis_ = analysis;
     } else {
       summary_.add(time, status, report, seconds);
     }
@@ -158,16 +179,23 @@ class Run {
 
   void close() {
     if (stream_ && koppel_stream_close(stream_.release(), &statistics_) < 0 && outcome_ == Exit::fine) {
-      outcome_ = Exit::system;
-      std::fputs("error: the stream could not be finished\n", stderr);
+      fail("the stream could not be finished");
     }
     if (table_ && !table_->good() && outcome_ == Exit::fine) table_failed();
   }
 
   bool table_failed() {
-    outcome_ = Exit::system;
-    std::fprintf(stderr, "error: cannot write %s\n", options_.csv.c_str());
+    fail("cannot write " + options_.csv);
     return false;
+  }
+
+  /// For what the library does not know of.
+  void fail(const std::string& message) {
+    outcome_ = Exit::system;
+    error_ = sized<koppel_error>();
+    error_.severity = KOPPEL_SEVERITY_ERROR;
+    std::snprintf(error_.message, sizeof error_.message, "%s", message.c_str());
+    std::fprintf(stderr, "error: %s\n", message.c_str());
   }
 
   const Model& model_;
@@ -182,7 +210,8 @@ class Run {
   bool streamed_ = false;
   bool started_ = false;
   koppel_stream_statistics statistics_ = sized<koppel_stream_statistics>();
-  koppel_analysis analysis_ = sized<koppel_analysis>();
+  std::optional<koppel_analysis> analysis_;  ///< at time 0
+  std::optional<std::uint32_t> failed_step_;
   Summary summary_;
   koppel_error error_ = sized<koppel_error>();
   Exit outcome_ = Exit::fine;
@@ -191,11 +220,19 @@ class Run {
 Exit run(const Options& options, bool verbose) {
   const Model model = load(options.scene, verbose);
   if (!model.mechanism) {
-    if (options.json) print_json({{"closed", nullptr}, {"error", json_of(model.error)}});
-    model.print_findings();
+    if (options.json) {
+      print_json({{"closed", nullptr},
+                  {"diagnostics", json_of_findings(model)},
+                  {"error", json_of_failure(model.error, std::nullopt, 0.0)}});
+    } else {
+      model.print_findings();
+    }
     return model.outcome;
   }
-  if (!options.quiet) model.print_findings();
+  if (!options.quiet) {
+    if (!options.json) model.print_findings();
+    if (model.sizes().inputs == 0) std::fputs("note: nothing is driven: nothing moves\n", stderr);
+  }
   Run run(model, options);
   const Exit outcome = run.run();
   if (options.json) {
@@ -206,30 +243,48 @@ Exit run(const Options& options, bool verbose) {
   return outcome;
 }
 
+std::string seconds(const std::string& text) {
+  double value = 0.0;
+  const bool good = CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value);
+  return good ? "" : "must be a positive number of seconds";
+}
+
+std::string step_count(const std::string& text) {
+  std::int64_t value = 0;
+  const bool good = CLI::detail::lexical_cast(text, value) && value >= 1 && value <= 1000000000;
+  return good ? "" : "must be a whole number from 1 to 1000000000";
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, const Common& common, Exit& outcome) {
   CLI::App* command =
       app.add_subcommand("run", "Move the drives of a scene over time; record, stream, tell how exactly and how fast");
   auto options = std::make_shared<Options>();
-  command->add_option("SCENE", options->scene, "The scene file")->required()->type_name("");
+  command->add_option("SCENE", options->scene, "The scene file")->required()->check(not_empty)->type_name("");
   command->add_option("--duration", options->duration, "How long to run; default: as the scene proposes")
-      ->check(CLI::PositiveNumber)
+      ->check(seconds)
       ->type_name("SECONDS");
   command->add_option("--steps", options->steps, "Number of steps; default: as the scene proposes")
-      ->check(CLI::Range(1u, 1000000000u))
+      ->check(step_count)
       ->type_name("N");
   CLI::Option* csv =
       command
           ->add_option("--csv", options->csv,
                        "Write time, recorded columns (SI units, radians) and residual; - is standard output")
+          ->check(not_empty)
           ->type_name("FILE");
   CLI::Option* lcm =
       command
           ->add_option("--lcm", options->lcm, "Stream to an LCM provider, for example udpm://239.255.76.67:7667?ttl=0")
+          ->check(not_empty)
           ->type_name("URL");
-  command->add_option("--log", options->log, "Keep the stream in an LCM log")->excludes(lcm)->type_name("FILE");
+  command->add_option("--log", options->log, "Keep the stream in an LCM log")
+      ->excludes(lcm)
+      ->check(not_empty)
+      ->type_name("FILE");
   command->add_option("--name", options->name, "Channels are KOPPEL_<NAME>_STATE and so on; default: the scene's name")
+      ->check(not_empty)
       ->type_name("NAME");
   command->add_flag("--realtime", options->realtime, "Let a second of the run take a second");
   command->add_flag("-q,--quiet", options->quiet, "Print errors only");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace koppel::app {
 namespace {
@@ -12,6 +13,11 @@ double quantile(const std::vector<double>& sorted, double fraction) {
   const auto below = static_cast<std::size_t>(place);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+/// The value, or null where it would mean nothing.
+nlohmann::ordered_json unless(bool missing, nlohmann::ordered_json value) {
+  return missing ? nullptr : std::move(value);
 }
 
 bool has(koppel_status remarks, koppel_status bit) { return (remarks & bit) != 0; }
@@ -25,24 +31,26 @@ Median median(std::vector<double> sample) {
   return {quantile(sample, 0.5), 1.57 * range / std::sqrt(static_cast<double>(sample.size()))};
 }
 
-void Summary::take_accuracy(double time, koppel_status status, const koppel_report& report) {
+void Summary::take_in(double time, koppel_status status, const koppel_report& report) {
   if (report.residual > worst_residual_) {
     worst_residual_ = report.residual;
     worst_time_ = time;
   }
   worst_coordinate_error_ = std::max(worst_coordinate_error_, report.coordinate_error);
   remarks_ |= status;
+  if (!branch_changed_time_ && has(status, KOPPEL_BRANCH_CHANGED)) branch_changed_time_ = time;
 }
 
 void Summary::assemble(koppel_status status, const koppel_report& report, double seconds) {
-  take_accuracy(0.0, status, report);
+  take_in(0.0, status, report);
   least_condition_ = greatest_condition_ = report.condition;
+  assembled_ = true;
   assembly_seconds_ = seconds;
   assembly_iterations_ = report.iterations;
 }
 
 void Summary::add(double time, koppel_status status, const koppel_report& report, double seconds) {
-  take_accuracy(time, status, report);
+  take_in(time, status, report);
   least_condition_ = std::min(least_condition_, report.condition);
   greatest_condition_ = std::max(greatest_condition_, report.condition);
   iterations_ += report.iterations;
@@ -52,34 +60,40 @@ void Summary::add(double time, koppel_status status, const koppel_report& report
 }
 
 void Summary::print(std::FILE* out) const {
-  const Median step = median(seconds_);
-  const double mean_iterations = static_cast<double>(iterations_) / std::max(1u, steps());
   std::fprintf(out, "assembly    %u iterations, %.3g ms\n", assembly_iterations_, 1e3 * assembly_seconds_);
   std::fprintf(out, "residual    at most %.1e, at t = %.6g s; coordinates within %.1e\n", worst_residual_, worst_time_,
                worst_coordinate_error_);
-  std::fprintf(out, "iterations  %.2f a step, at most %u; %u steps needed Ceres\n", mean_iterations, most_iterations_,
-               ceres_steps_);
+  if (steps() > 0) {
+    std::fprintf(out, "iterations  %.2f a step, at most %u; %u steps needed Ceres\n",
+                 static_cast<double>(iterations_) / steps(), most_iterations_, ceres_steps_);
+  }
   std::fprintf(out, "condition   %.3g to %.3g\n", least_condition_, greatest_condition_);
-  std::fprintf(out,
-               "step        %.2f +- %.2f us (median and its 95 %% interval; position, velocity and acceleration)\n",
-               1e6 * step.value, 1e6 * step.error);
+  if (steps() > 0) {
+    const Median step = median(seconds_);
+    std::fprintf(out,
+                 "step        %.2f +- %.2f us (median and its 95 %% interval; position, velocity and acceleration)\n",
+                 1e6 * step.value, 1e6 * step.error);
+  }
   if (has(remarks_, KOPPEL_REDUNDANT)) std::fputs("remark      some closure equations follow from the others\n", out);
   if (has(remarks_, KOPPEL_NEAR_SINGULAR)) std::fputs("remark      passes a badly conditioned position\n", out);
-  if (has(remarks_, KOPPEL_BRANCH_CHANGED)) std::fputs("remark      changes its branch\n", out);
+  if (branch_changed_time_) {
+    std::fprintf(out, "remark      changes its branch first at t = %.6g s: use more steps\n", *branch_changed_time_);
+  }
   if (has(remarks_, KOPPEL_LIMIT_EXCEEDED)) std::fputs("remark      leaves the limits of a coordinate\n", out);
 }
 
 void Summary::write(nlohmann::ordered_json& document) const {
   const Median step = median(seconds_);
   document["steps"] = steps();
-  document["max_residual"] = worst_residual_;
-  document["max_residual_time"] = worst_time_;
-  document["max_coordinate_error"] = worst_coordinate_error_;
+  document["max_residual"] = unless(!assembled_, worst_residual_);
+  document["max_residual_time"] = unless(!assembled_, worst_time_);
+  document["max_coordinate_error"] = unless(!assembled_, worst_coordinate_error_);
   document["iterations"] = {{"total", iterations_}, {"max", most_iterations_}, {"steps_with_ceres", ceres_steps_}};
-  document["condition"] = {{"min", least_condition_}, {"max", greatest_condition_}};
-  document["assembly"] = {{"iterations", assembly_iterations_}, {"seconds", assembly_seconds_}};
-  document["seconds_per_step"] = step.value;
-  document["seconds_per_step_error"] = step.error;
+  document["condition"] = unless(!assembled_, {{"min", least_condition_}, {"max", greatest_condition_}});
+  document["assembly"] = unless(!assembled_, {{"iterations", assembly_iterations_}, {"seconds", assembly_seconds_}});
+  document["seconds_per_step"] = unless(steps() == 0, step.value);
+  document["seconds_per_step_error"] = unless(steps() == 0, step.error);
+  document["branch_changed_time"] = unless(!branch_changed_time_, branch_changed_time_.value_or(0.0));
   document["remarks"] = {{"redundant", has(remarks_, KOPPEL_REDUNDANT)},
                          {"near_singular", has(remarks_, KOPPEL_NEAR_SINGULAR)},
                          {"branch_changed", has(remarks_, KOPPEL_BRANCH_CHANGED)},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "koppel/command.hpp"
@@ -30,7 +31,7 @@ class Summary {
   void write(nlohmann::ordered_json& document) const;
 
  private:
-  void take_accuracy(double time, koppel_status status, const koppel_report& report);
+  void take_in(double time, koppel_status status, const koppel_report& report);
 
   std::vector<double> seconds_;
   double assembly_seconds_ = 0.0;
@@ -44,6 +45,8 @@ class Summary {
   std::uint32_t most_iterations_ = 0;
   std::uint32_t ceres_steps_ = 0;
   koppel_status remarks_ = KOPPEL_OK;
+  std::optional<double> branch_changed_time_;  ///< the first one
+  bool assembled_ = false;
 };
 
 }  // namespace koppel::app

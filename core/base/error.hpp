@@ -44,10 +44,10 @@ Error make_error(Code code, std::string element, std::string message, std::strin
 template <typename T>
 using Result = tl::expected<T, Error>;
 
-/// "E0312", "W0408", "N0601": the letter tells the severity.
+/// "E0304", "W0408", "N0601": the letter tells the severity.
 std::string code_text(Code code, Severity severity);
 
-/// The explanation of "E0312" or "312"; nothing if there is no such code.
+/// The explanation of "E0304" or "304"; nothing if there is no such code.
 std::optional<std::string> explain_code(std::string_view text);
 
 /// The finding as a compiler would print it: place, line with caret, message, advice. Ends with a newline.

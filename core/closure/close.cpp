@@ -131,6 +131,7 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
   if (closing.plugin_failed()) return KOPPEL_PLUGIN;
   if (!closed) {
     report.residual = closing.nearest();
+    report.open_row = closing.nearest_row();
     report.verdict = tracking && options.method == Method::newton ? Verdict::retry : Verdict::not_found;
     return report.verdict == Verdict::retry ? KOPPEL_RETRY : KOPPEL_NOT_CLOSED;
   }
@@ -193,7 +194,10 @@ koppel_status move(Work& work, State& state, double time, Report& report) {
     state = work.saved;
     return status;
   };
-  if (set_time(*work.mechanism, time, state) != nullptr) return KOPPEL_PLUGIN;
+  if (const Input* failed = set_time(*work.mechanism, time, state)) {
+    work.equations.blame(*failed);
+    return KOPPEL_PLUGIN;
+  }
   const koppel_status closed = close(work, state, {}, report);
   if (closed < 0) return back(closed);
   for (const auto step : {velocities, accelerations}) {

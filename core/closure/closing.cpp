@@ -59,8 +59,10 @@ bool Closing::try_newton(InputsAre inputs) {
   report_.iterations += result.iterations;
   if (result.iterations > 0) report_.solver = SolverUsed::newton;
   plugin_failed_ = result.plugin_failed;
-  if (!result.converged && inputs == InputsAre::held && inputs_at_target()) {
-    nearest_ = std::min(nearest_, work_.equations.error());
+  if (!result.converged && inputs == InputsAre::held && inputs_at_target() && work_.equations.error() < nearest_) {
+    Eigen::Index row = 0;
+    nearest_ = work_.equations.residual.cwiseAbs().maxCoeff(&row);
+    nearest_row_ = static_cast<std::uint32_t>(row);
   }
   return result.converged;
 }

@@ -24,8 +24,10 @@ class Closing {
   bool assemble();
 
   bool plugin_failed() const { return plugin_failed_; }
-  /// After a search without success: the least error that was left with the inputs where they should be.
+  /// After a search without success: the least error that was left with the inputs where they should be, and the
+  /// equation that had it.
   double nearest() const { return nearest_; }
+  std::uint32_t nearest_row() const { return nearest_row_; }
   /// follow() only came through by a jump.
   bool branch_changed() const { return branch_changed_; }
 
@@ -47,6 +49,7 @@ class Closing {
   NewtonOptions newton_;
   std::uint32_t ceres_iterations_ = 0;
   double nearest_ = std::numeric_limits<double>::infinity();
+  std::uint32_t nearest_row_ = 0;
   bool plugin_failed_ = false;
   bool branch_changed_ = false;
 };

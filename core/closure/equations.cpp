@@ -24,6 +24,11 @@ std::string constraint_text(const Mechanism& mechanism, std::uint32_t i) {
   return "constraint " + constraint.name + " of type " + constraint.type->name + " (" + constraint.type->origin + ")";
 }
 
+std::string input_text(const Mechanism& mechanism, std::uint32_t i) {
+  const Input& input = mechanism.inputs[i];
+  return "drive " + input.name + " of type " + input.type->name + " (" + input.type->origin + ")";
+}
+
 /// Rates whose twist S rates is nearest to the given one.
 void rates_of_twist(const Subspace& s, const Vector6& twist, double* rates) {
   if (s.cols() == 0) return;
@@ -59,6 +64,11 @@ bool Equations::constraint_failed(std::uint32_t constraint) {
   culprit_kind_ = constraint_text;
   culprit_index_ = constraint;
   return false;
+}
+
+void Equations::blame(const Input& input) {
+  culprit_kind_ = input_text;
+  culprit_index_ = static_cast<std::uint32_t>(&input - mechanism.inputs.data());
 }
 
 std::string Equations::culprit() const {

@@ -47,6 +47,8 @@ class Equations {
 
   /// "joint crank of type acme.hinge": whose function failed last.
   std::string culprit() const;
+  /// Makes a drive the culprit.
+  void blame(const Input& input);
 
  private:
   /// Where one relation stands, and its own Jacobian, unscaled.

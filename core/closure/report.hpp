@@ -13,7 +13,8 @@ struct Report {
   SolverUsed solver = SolverUsed::none;  ///< the last that was used
   std::uint32_t iterations = 0;          ///< of all solvers together
   std::uint32_t rank = 0;                ///< of the equations with respect to the unknowns
-  double residual = 0.0;                 ///< greatest scaled equation
+  double residual = 0.0;                 ///< greatest scaled equation; of a failure: the least that was reached
+  std::uint32_t open_row = 0;            ///< of a failure: the equation that stayed open most there
   double condition = 1.0;                ///< ratio of extreme singular values that count, estimated
   double coordinate_error = 0.0;         ///< estimated greatest error of an unknown, in radians' size
 };

@@ -12,7 +12,7 @@ void read_body(Reading& reading, const Element& element) {
   table.at_most_one({"rotate", "quaternion"});
   if (const auto design = read_pose(table)) body.design = *design;
   body.type = find_type<BodyType>(reading, scope, table, "rigid", &Registry::body);
-  if (body.type == nullptr) return;
+  if (body.type == nullptr) return table.finish_without_type();
   body.values = read_values(reading, scope, table, *body.type).values;
   table.finish();
 }

@@ -27,6 +27,15 @@ void check_driven(Reading& reading, const Element& element, const TableReader& t
   }
 }
 
+/// What the values of a function are measured in where its schema does not say: standard functions have the unit of the
+/// coordinate, those of other plugins speak for themselves.
+std::string_view value_unit(const Reading& reading, const FunctionType& type,
+                            const std::optional<CoordinateReference>& coordinate) {
+  const bool standard = type.name.find('.') == std::string::npos;
+  if (!standard || !coordinate) return "";
+  return unit_of(reading.scene.joints[coordinate->joint.index()].type->blocks[coordinate->block].kind);
+}
+
 }  // namespace
 
 void read_constraint(Reading& reading, const Element& element) {
@@ -35,7 +44,7 @@ void read_constraint(Reading& reading, const Element& element) {
   table.find("name");
   ConstraintDescription& constraint = reading.scene.constraints[element.index];
   constraint.type = find_type<ConstraintType>(reading, scope, table, "", &Registry::constraint);
-  if (constraint.type == nullptr) return;
+  if (constraint.type == nullptr) return table.finish_without_type();
   TypeValues given = read_values(reading, scope, table, *constraint.type);
   constraint.values = std::move(given.values);
   constraint.frames = std::move(given.frames);
@@ -56,10 +65,11 @@ void read_drive(Reading& reading, const Element& element) {
     if (drive.name.empty()) drive.name = coordinate_name(reading.scene, *coordinate);
     check_driven(reading, element, table, *of, *coordinate);
   }
-  if (type == nullptr) return;
+  if (type == nullptr) return table.finish_without_type();
   // The type marks the drive as complete: check_driven() compares with no other.
   if (coordinate) drive.type = type;
-  drive.values = read_values(reading, scope, table, *type).values;
+  drive.values =
+      read_values(reading, scope, table, *type, Matrix3::Identity(), value_unit(reading, *type, coordinate)).values;
   table.finish();
 }
 

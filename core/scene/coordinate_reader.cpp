@@ -51,8 +51,9 @@ std::optional<CoordinateReference> read_scalar_coordinate(Reading& reading, Scop
   if (!coordinate) return std::nullopt;
   const Block& block = reading.scene.joints[coordinate->joint.index()].type->blocks[coordinate->block];
   if (is_scalar(block.kind)) return coordinate;
-  values.report().error(Code::not_scalar, node.place, quote(node.text) + " is no single length or angle",
-                        "only coordinates with one number can stand here");
+  values.report().error(
+      Code::not_scalar, node.place, quote(node.text) + " is no single length or angle",
+      "only coordinates with one number can stand here: take a chain of revolutes or a universal joint instead");
   return std::nullopt;
 }
 

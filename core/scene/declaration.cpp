@@ -11,7 +11,7 @@ struct Kind {
   std::vector<Element>& elements;
 };
 
-std::string read_name(const Scope& scope, const Reporter& report, const Node& table, const Kind& kind) {
+std::string read_name(Names& names, const Scope& scope, const Reporter& report, const Node& table, const Kind& kind) {
   const Node* node = table.find("name");
   if (node == nullptr) {
     if (kind.needs_name) {
@@ -25,6 +25,7 @@ std::string read_name(const Scope& scope, const Reporter& report, const Node& ta
     return {};
   }
   if (is_element_name(node->text)) return scope.prefix + node->text;
+  names.refuse(scope.prefix + node->text);
   report.error(Code::bad_name, node->place, quote(node->text) + " cannot be a name",
                "begin with a letter or underscore and go on with letters, digits, underscores and hyphens");
   return {};
@@ -51,7 +52,8 @@ void declare(Reading& reading, Scope& scope, const Kind& kind, Add add) {
     Element element;
     element.scope = &scope;
     element.table = &table;
-    element.name = read_name(scope, reading.reporter(scope, key + ' ' + std::to_string(i + 1)), table, kind);
+    element.name =
+        read_name(reading.names, scope, reading.reporter(scope, key + ' ' + std::to_string(i + 1)), table, kind);
     element.label = key + ' ' + (element.name.empty() ? std::to_string(i + 1) : element.name);
     if (!add(element, scope.document->source(table.place)) && !element.name.empty()) {
       reading.reporter(scope, element.label)

@@ -117,6 +117,35 @@ void for_each_word(std::string_view text, Visit visit) {
   }
 }
 
+std::string_view without_blanks(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+std::string unit_names() {
+  std::string names;
+  for (const Unit& unit : units) names.append(names.empty() ? "" : " ").append(unit.name);
+  return names;
+}
+
+/// A unit that a number is divided by, as in "360 deg/s": units stand behind numbers only.
+std::optional<ExpressionFault> find_divisor_unit(std::string_view text) {
+  std::optional<ExpressionFault> fault;
+  for_each_word(text, [&](std::size_t offset, std::string_view word) {
+    std::string_view before = without_blanks(text.substr(0, offset));
+    if (fault || find_unit(word) == nullptr || before.empty() || before.back() != '/') return;
+    before = without_blanks(before.substr(0, before.size() - 1));
+    const std::string unit(word);
+    const bool rate = unit == "s" && !quantity_unit(before).empty();
+    fault =
+        ExpressionFault{Code::bad_expression, offset, word.size(), "the unit `" + unit + "` has no number before it",
+                        rate ? "rates are per second already: write " + std::string(before)
+                             : "a unit is written after a number: 1 " + unit};
+  });
+  return fault;
+}
+
 }  // namespace
 
 struct Calculator::Impl {
@@ -164,12 +193,19 @@ tl::expected<double, ExpressionFault> Calculator::evaluate(const std::string& te
   std::optional<ExpressionFault> unknown;
   for_each_word(text, [&](std::size_t offset, std::string_view word) {
     if (unknown || impl_->knows(word)) return;
+    const std::string_view before = without_blanks(std::string_view(text).substr(0, offset));
+    if (!before.empty() && (is_digit(before.back()) || before.back() == '.')) {
+      unknown = ExpressionFault{Code::bad_expression, offset, word.size(),
+                                std::string("`").append(word).append("` is no unit"), "units are " + unit_names()};
+      return;
+    }
     std::string message = '`' + std::string(word) + "` is neither a parameter nor a unit nor a function";
     const auto nearest = nearest_name(word, impl_->words());
     unknown = ExpressionFault{Code::bad_expression, offset, word.size(), std::move(message),
                               nearest ? "did you mean `" + *nearest + "`?"
                                       : std::string("define it in [parameters], or write a number with a unit")};
   });
+  if (!unknown) unknown = find_divisor_unit(text);
   if (unknown) return tl::make_unexpected(std::move(*unknown));
   try {
     impl_->parser.SetExpr(text);
@@ -214,17 +250,10 @@ std::string_view reserved_word(std::string_view word) {
 }
 
 std::string_view quantity_unit(std::string_view text) {
-  const auto skip = [&text] {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  };
-  skip();
-  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
-  skip();
+  text = without_blanks(text);
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text = without_blanks(text.substr(1));
   if (text.empty() || !(is_digit(text.front()) || text.front() == '.')) return {};
-  text.remove_prefix(number_length(text));
-  skip();
-  const Unit* unit = find_unit(text);
+  const Unit* unit = find_unit(without_blanks(text.substr(number_length(text))));
   return unit == nullptr ? std::string_view{} : unit->si;
 }
 

@@ -80,6 +80,12 @@ std::string read_prefix(TableReader& table) {
   return {};
 }
 
+/// Whether the names of another included scene begin with this prefix.
+bool is_taken(const Reading& reading, const std::string& prefix) {
+  return std::any_of(reading.scopes.begin(), reading.scopes.end(),
+                     [&prefix](const auto& scope) { return scope->prefix == prefix; });
+}
+
 /// Where a file lies, without links and dots. Errors: file_unreadable.
 Result<fs::path> locate(const fs::path& file, const fs::path& folder) {
   if (file.is_relative() && folder.empty()) {
@@ -156,9 +162,17 @@ void read_includes(Reading& reading, Scope& scope, const std::vector<fs::path>& 
       continue;
     }
     TableReader table(item, reading.values(scope, "include"));
-    const std::string prefix = scope.prefix + read_prefix(table);
+    const std::string own_prefix = read_prefix(table);
+    const std::string prefix = scope.prefix + own_prefix;
+    table.find("file");
     table.find("parameters");
-    if (!read_include(reading, scope, table, prefix, ancestors)) reading.names.give_up(prefix);
+    if (!own_prefix.empty() && is_taken(reading, prefix)) {
+      const Node& node = *table.find("prefix");
+      table.report().error(Code::duplicate_name, node.place, "prefix " + quote(node.text) + " is taken",
+                           "choose another prefix: each included scene has its own");
+      reading.names.give_up(prefix);
+    } else if (!read_include(reading, scope, table, prefix, ancestors))
+      reading.names.give_up(prefix);
     table.finish();
   }
 }

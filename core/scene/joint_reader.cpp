@@ -16,7 +16,8 @@ Placement read_between(Reading& reading, Scope& scope, TableReader& table, const
   Placement placement;
   table.none_of({"inlet", "outlet"}, "does not go with `between`, which places the joint already");
   const auto pose = read_axis_pose(table);
-  if (!table.values().is_list(between, "`between`", 2, 2)) return placement;
+  const std::string_view advice = "name two bodies: between = [\"ground\", \"crank\"]";
+  if (!table.values().is_list(between, "`between`", 2, 2, advice)) return placement;
   std::optional<BodyId> bodies[2];
   for (std::size_t i = 0; i < 2; ++i) {
     const Node& item = between.items[i];
@@ -150,7 +151,7 @@ void read_joint(Reading& reading, const Element& element) {
     }
   }
   joint.type = find_type<JointType>(reading, scope, table, "", &Registry::joint);
-  if (joint.type == nullptr) return;
+  if (joint.type == nullptr) return table.finish_without_type({"zero", "start", "limits"});
   joint.coordinates.resize(joint.type->blocks.size());
   reading.starts[element.index].resize(joint.type->blocks.size());
   joint.values = read_values(reading, scope, table, *joint.type, placement.to_inlet).values;

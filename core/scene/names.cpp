@@ -7,12 +7,24 @@ namespace {
 
 std::string joined(std::string_view prefix, std::string_view name) { return std::string(prefix) + std::string(name); }
 
+/// The nearest name; where none is near, the one that is so without the prefix of an included scene.
+std::string nearest_advice(std::string_view name, const std::vector<std::string>& candidates) {
+  std::string advice = did_you_mean(name, candidates);
+  if (!advice.empty()) return advice;
+  std::vector<std::string> ends;
+  for (const std::string& candidate : candidates) ends.push_back(candidate.substr(candidate.rfind('.') + 1));
+  const auto nearest = nearest_name(name, ends);
+  if (!nearest) return {};
+  const auto index = std::find(ends.begin(), ends.end(), *nearest) - ends.begin();
+  return "did you mean " + quote(candidates[static_cast<std::size_t>(index)]) + '?';
+}
+
 /// All names that can be written in a file with this prefix, as they are written there.
 template <typename Value, typename Wanted>
 std::vector<std::string> visible(const std::map<std::string, Value>& names, std::string_view prefix, Wanted wanted) {
   std::vector<std::string> out;
   for (auto i = names.lower_bound(std::string(prefix)); i != names.end() && i->first.rfind(prefix, 0) == 0; ++i) {
-    if (wanted(i->second)) out.push_back(i->first.substr(prefix.size()));
+    if (i->first.size() > prefix.size() && wanted(i->second)) out.push_back(i->first.substr(prefix.size()));
   }
   return out;
 }
@@ -33,6 +45,7 @@ std::optional<JointId> Names::find_joint(std::string_view prefix, std::string_vi
 
 bool Names::is_lost(std::string_view prefix, std::string_view name) const {
   const std::string full = joined(prefix, name);
+  if (refused_.count(full) > 0) return true;
   return std::any_of(lost_.begin(), lost_.end(), [&full](const std::string& lost) { return full.rfind(lost, 0) == 0; });
 }
 
@@ -44,7 +57,7 @@ std::optional<BodyId> Names::body(std::string_view name, const Mention& mention)
   bodies.emplace_back("ground");
   mention.report.error(Code::unknown_body, mention.place,
                        found ? quote(name) + " is a frame; here a body is needed" : "no body is called " + quote(name),
-                       did_you_mean(name, bodies));
+                       nearest_advice(name, bodies));
   return std::nullopt;
 }
 
@@ -54,7 +67,7 @@ std::optional<Names::Fixed> Names::fixed(std::string_view name, const Mention& m
   auto frames = visible(fixed_, mention.prefix, [](const Fixed&) { return true; });
   frames.emplace_back("ground");
   mention.report.error(Code::unknown_frame, mention.place, "no frame or body is called " + quote(name),
-                       did_you_mean(name, frames));
+                       nearest_advice(name, frames));
   return std::nullopt;
 }
 
@@ -62,7 +75,7 @@ std::optional<JointId> Names::joint(std::string_view name, const Mention& mentio
   const auto found = find_joint(mention.prefix, name);
   if (found || is_lost(mention.prefix, name)) return found;
   mention.report.error(Code::unknown_joint, mention.place, "no joint is called " + quote(name),
-                       did_you_mean(name, visible(joints_, mention.prefix, [](JointId) { return true; })));
+                       nearest_advice(name, visible(joints_, mention.prefix, [](JointId) { return true; })));
   return std::nullopt;
 }
 

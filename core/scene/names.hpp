@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,11 @@ class Names {
   /// Names with this prefix are unknown because an include failed: nobody complains of them.
   void give_up(std::string prefix) { lost_.push_back(std::move(prefix)); }
 
+  /// An element has this name, with prefix, but may not: nobody complains that it is unknown.
+  void refuse(std::string name) { refused_.insert(std::move(name)); }
+  /// Whether a name is unknown because of a fault that has been reported.
+  bool is_lost(std::string_view prefix, std::string_view name) const;
+
   std::optional<Fixed> find_fixed(std::string_view prefix, std::string_view name) const;
   std::optional<JointId> find_joint(std::string_view prefix, std::string_view name) const;
 
@@ -46,11 +52,10 @@ class Names {
   std::optional<JointId> joint(std::string_view name, const Mention& mention) const;
 
  private:
-  bool is_lost(std::string_view prefix, std::string_view name) const;
-
   std::map<std::string, Fixed> fixed_;
   std::map<std::string, JointId> joints_;
   std::vector<std::string> lost_;
+  std::set<std::string> refused_;
 };
 
 /// A letter or underscore, then letters, digits, underscores and hyphens.

@@ -101,6 +101,8 @@ void read_subject(Reading& reading, Scope& scope, const TableReader& table, cons
     report.error(Code::unknown_quantity, of.place, quote(of.text) + " is a joint; here a coordinate or frame is needed",
                  turning ? "add quantity = \"cardan\", or name a coordinate: " + coordinates_text(*type)
                          : "write \"joint.coordinate\": " + coordinates_text(*type));
+  } else if (reading.names.is_lost(scope.prefix, of.text)) {
+    return;  // the same of a frame
   } else if (means_coordinate(reading, scope.prefix, of.text)) {
     const auto coordinate = read_coordinate(reading, scope, report, of);
     if (coordinate) {

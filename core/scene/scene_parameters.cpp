@@ -39,14 +39,19 @@ void SceneParameters::read(const Node* table, const ParameterOverrides& override
 }
 
 void SceneParameters::collect(const Node& table, const ParameterOverrides& overrides, const Reporter& report) {
+  const auto refuse = [this](std::string_view name) {
+    for (std::string& word : names_in(name)) refused_.insert(std::move(word));
+  };
   for (std::size_t i = 0; i < table.keys.size(); ++i) {
     const auto& [name, place] = table.keys[i];
     if (!is_parameter_name(name)) {
+      refuse(name);
       report.error(Code::bad_name, place, quote(name) + " cannot be the name of a parameter",
                    "use letters, digits and underscores: in an expression a hyphen means minus");
       continue;
     }
     if (const std::string_view word = reserved_word(name); !word.empty()) {
+      refuse(name);
       report.error(Code::bad_name, place, quote(name) + " is " + std::string(word) + " in expressions",
                    "give the parameter another name");
       continue;
@@ -113,8 +118,9 @@ void SceneParameters::report_cycles(const std::map<std::string, std::size_t>& op
 }
 
 std::optional<double> SceneParameters::evaluate(const Node& string, const Reporter& report) {
-  bool usable = true;
+  bool usable = true, refused = false;
   for (const std::string& word : names_in(string.text)) {
+    refused = refused || refused_.count(word) > 0;
     const auto found = definitions_.find(word);
     if (found == definitions_.end()) continue;
     found->second.used = true;
@@ -123,6 +129,7 @@ std::optional<double> SceneParameters::evaluate(const Node& string, const Report
   if (!usable) return std::nullopt;
   const auto value = calculator_.evaluate(string.text);
   if (value) return *value;
+  if (refused) return std::nullopt;
   const ExpressionFault& fault = value.error();
   report.error(fault.code, report.document().within(string, fault.offset, fault.length), fault.message, fault.advice);
   return std::nullopt;

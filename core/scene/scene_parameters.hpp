@@ -46,6 +46,7 @@ class SceneParameters {
   void report_cycles(const std::map<std::string, std::size_t>& open, const Reporter& report) const;
 
   std::map<std::string, Definition> definitions_;
+  std::set<std::string> refused_;  ///< words of faulty names: expressions that fail with them say nothing more
   Calculator calculator_;
 };
 

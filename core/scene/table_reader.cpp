@@ -69,4 +69,17 @@ void TableReader::finish() const {
   }
 }
 
+void TableReader::finish_without_type(std::initializer_list<std::string_view> more) {
+  for (const std::string_view key : more) known_.emplace(key);
+  const std::vector<std::string> candidates(known_.begin(), known_.end());
+  for (const Node::Key& key : table_->keys) {
+    if (known_.count(key.text) > 0) continue;
+    // `axis2` is no misspelt `axis`.
+    if (!key.text.empty() && key.text.back() >= '0' && key.text.back() <= '9') continue;
+    std::string advice = did_you_mean(key.text, candidates);
+    if (advice.empty()) continue;
+    report().error(Code::unknown_key, key.place, quote(key.text) + " is not known here", std::move(advice));
+  }
+}
+
 }  // namespace koppel

@@ -34,6 +34,9 @@ class TableReader {
   const Place& place_of(std::string_view key) const;
   /// Reports the keys that nobody has asked for.
   void finish() const;
+  /// The same where the type is faulty: other keys may be its parameters, so that only misspelt ones are reported.
+  /// `more`: keys of the language that nobody has asked for yet.
+  void finish_without_type(std::initializer_list<std::string_view> more = {});
 
  private:
   const Node* table_;

@@ -13,8 +13,9 @@ bool is_about_the_type(Code code) {
 /// Reads one parameter; `given` and the frames and coordinates follow from the kind.
 class ParameterReader {
  public:
-  ParameterReader(Reading& reading, Scope& scope, const ValueReader& values, const Matrix3& to_inlet, TypeValues& out)
-      : reading_(reading), scope_(scope), values_(values), to_inlet_(to_inlet), out_(out) {}
+  ParameterReader(Reading& reading, Scope& scope, const ValueReader& values, const Matrix3& to_inlet,
+                  std::string_view value_unit, TypeValues& out)
+      : reading_(reading), scope_(scope), values_(values), to_inlet_(to_inlet), value_unit_(value_unit), out_(out) {}
 
   Value read(const Parameter& parameter, const Node& node) {
     Value value;
@@ -44,11 +45,15 @@ class ParameterReader {
     value.count = value.numbers.size();
   }
 
+  std::string_view unit_of_reals(const Parameter& parameter) const {
+    return parameter.unit.empty() ? value_unit_ : parameter.unit;
+  }
+
   Numbers read_reals(const Parameter& parameter, const Node& node, const std::string& what) const {
     if (parameter.count_max > 1 && (node.is_list() || parameter.count_min > 1)) {
-      return values_.numbers(node, what, parameter.count_min, parameter.count_max, parameter.unit);
+      return values_.numbers(node, what, parameter.count_min, parameter.count_max, unit_of_reals(parameter));
     }
-    const auto number = values_.number(node, what, parameter.unit);
+    const auto number = values_.number(node, what, unit_of_reals(parameter));
     return number ? Numbers(std::vector<double>{*number}) : std::nullopt;
   }
 
@@ -92,7 +97,7 @@ class ParameterReader {
         continue;
       }
       for (std::size_t i = 0; i < row.items.size(); ++i) {
-        const auto number = values_.number(row.items[i], row_name, i == 0 ? parameter.unit : "");
+        const auto number = values_.number(row.items[i], row_name, i == 0 ? parameter.unit : value_unit_);
         complete = complete && number;
         numbers.push_back(number.value_or(0.0));
       }
@@ -138,6 +143,7 @@ class ParameterReader {
   Scope& scope_;
   const ValueReader& values_;
   const Matrix3& to_inlet_;
+  std::string_view value_unit_;
   TypeValues& out_;
 };
 
@@ -187,9 +193,10 @@ Value fallback_value(const Parameter& parameter) {
   return value;
 }
 
-TypeValues read_values(Reading& reading, Scope& scope, TableReader& table, const Type& type, const Matrix3& to_inlet) {
+TypeValues read_values(Reading& reading, Scope& scope, TableReader& table, const Type& type, const Matrix3& to_inlet,
+                       std::string_view value_unit) {
   TypeValues out;
-  ParameterReader reader(reading, scope, table.values(), to_inlet, out);
+  ParameterReader reader(reading, scope, table.values(), to_inlet, value_unit, out);
   for (const Parameter& parameter : type.parameters) {
     Value value;
     if (const Node* node = table.find(parameter.name)) {

@@ -24,29 +24,38 @@ class ValueReader {
 
   const Reporter& report() const { return report_; }
 
-  // `what` is the key as messages name it; `unit` the SI unit of the value: a plain quantity must fit it.
+  // `what` is the key as messages name it; `unit` the SI unit of the value: a plain quantity must fit it. In units such
+  // as m/rad, the quantity is the numerator.
 
-  /// A finite number. Errors: wrong_kind (also for a unit that does not fit), bad_expression, not_finite.
+  /// A finite number. Errors: wrong_kind (also for a unit that does not fit), bad_expression, not_finite; out_of_range
+  /// for lengths beyond any mechanism.
   std::optional<double> number(const Node& node, std::string_view what, std::string_view unit = "") const;
   /// The same, and greater than 0. Error: out_of_range.
   std::optional<double> positive(const Node& node, std::string_view what, std::string_view unit = "") const;
   /// A list of numbers. Errors also: wrong_count.
   std::optional<std::vector<double>> numbers(const Node& node, std::string_view what, std::size_t count_min,
-                                             std::size_t count_max, std::string_view unit = "") const;
+                                             std::size_t count_max, std::string_view unit = "",
+                                             std::string_view advice = "") const;
   std::optional<Vector3> vector(const Node& node, std::string_view what, std::string_view unit = "") const;
   /// A vector of any length but zero, normalised. Error: zero_direction.
   std::optional<Vector3> direction(const Node& node, std::string_view what) const;
   /// w x y z of any length but zero, normalised. Error: zero_direction.
   std::optional<Vector4> quaternion(const Node& node, std::string_view what) const;
   std::optional<std::string> text(const Node& node, std::string_view what) const;
-  bool is_list(const Node& node, std::string_view what, std::size_t count_min, std::size_t count_max) const;
+  bool is_list(const Node& node, std::string_view what, std::size_t count_min, std::size_t count_max,
+               std::string_view advice = "") const;
 
   /// Error: wrong_kind.
   bool is_whole(double value, const Node& node, std::string_view what) const;
 
-  void wrong_kind(const Node& node, std::string_view what, std::string_view expected) const;
+  void wrong_kind(const Node& node, std::string_view what, std::string_view expected,
+                  std::string_view advice = "") const;
 
  private:
+  bool fits(const Node& string, std::string_view what, std::string_view unit) const;
+  std::optional<double> within_reach(double value, const Node& node, std::string_view what,
+                                     std::string_view unit) const;
+
   Reporter report_;
   SceneParameters* parameters_;
 };

@@ -15,7 +15,7 @@ namespace koppel {
 
 class LogSink : public Sink {
  public:
-  /// Overwrites the file. stream_url: it cannot be opened.
+  /// Overwrites the file. stream_failed: it cannot be opened.
   static Result<std::unique_ptr<LogSink>> open(const ProviderUrl& url);
 
   bool lossless() const override { return true; }

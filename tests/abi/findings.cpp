@@ -144,6 +144,30 @@ TEST(Errors, LongerThanTheirFieldsAreCutAndEnded) {
   EXPECT_LT(std::strlen(error.message), sizeof error.message);
 }
 
+// The crank turns once in a second, so that it meets its limit of 30 degrees after 1/12 s.
+TEST(Errors, OfAMoveNameTheTimeThatWasAskedFor) {
+  const Host host(std::string(KOPPEL_TEST_FOLDER) + "/out_of_reach.toml");
+  auto error = sized<koppel_error>();
+  ASSERT_GE(host.move(0.0), 0);
+  ASSERT_EQ(koppel_move(host.state.get(), host.work.get(), 0.125, nullptr, &error), KOPPEL_NOT_CLOSED);
+  EXPECT_EQ(koppel_state_time(host.state.get()), 0.0);
+  EXPECT_NE(std::string(error.message).find("at time 0.125 s"), std::string::npos) << error.message;
+}
+
+// At 90 degrees the pin is a crank's length from the slider's line, and the rod reaches half of that.
+TEST(Errors, OfAssemblyTellHowFarItIsFromClosing) {
+  const Host host(std::string(KOPPEL_TEST_FOLDER) + "/out_of_reach.toml");
+  auto error = sized<koppel_error>();
+  auto report = sized<koppel_report>();
+  ASSERT_EQ(koppel_state_set_input(host.state.get(), 0, 1.5707963267948966, 0.0, 0.0), KOPPEL_OK);
+  ASSERT_EQ(koppel_close(host.state.get(), host.work.get(), nullptr, &report, &error), KOPPEL_NOT_CLOSED);
+  char off[32];
+  std::snprintf(off, sizeof off, "%.3g", report.residual);
+  EXPECT_NE(std::string(error.message).find("stays open by " + std::string(off)), std::string::npos) << error.message;
+  EXPECT_NEAR(report.residual, 0.5,
+              0.25);  // of the crank's length; the least-squares fit spreads it over the equations
+}
+
 TEST(Codes, AllHaveAnExplanation) {
   const std::pair<int, const char*> codes[] = {
 #define KOPPEL_CODE(number, identifier, explanation) {number, #identifier},

@@ -40,10 +40,10 @@ inline Work make_work(const Mechanism& mechanism) {
   return Work(work);
 }
 
-/// Everything that a host holds for a shipped scene.
+/// Everything that a host holds for a scene: a shipped one by its name, or another by its file.
 struct Host {
   explicit Host(const std::string& name) : engine(make_engine()) {
-    const std::string file = KOPPEL_SCENES "/" + name + ".toml";
+    const std::string file = name.find('/') == std::string::npos ? KOPPEL_SCENES "/" + name + ".toml" : name;
     koppel_scene* read = nullptr;
     EXPECT_EQ(koppel_scene_from_file(engine.get(), file.c_str(), nullptr, &read, nullptr), KOPPEL_OK);
     scene.reset(read);

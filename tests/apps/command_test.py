@@ -1,9 +1,11 @@
 """The koppel command: exit codes, what goes where, and the keys of --json."""
 
 import math
+import re
 import unittest
 
-from program import FINE, FOURBAR, LOCKED, NOT_CLOSED, SCENE, SYSTEM, USAGE, ProgramTest, log_channels, read_table
+from program import (FAR, FINE, FOURBAR, LOCKED, NOT_CLOSED, OVERDRIVEN, SCENE, SCENES, SYSTEM, UNDRIVEN, USAGE,
+                     ProgramTest, log_channels, read_table)
 
 
 class Usage(ProgramTest):
@@ -26,6 +28,29 @@ class Usage(ProgramTest):
                 result = self.expect(USAGE, "koppel", *arguments)
                 self.assertEqual(result.stdout, "")
                 self.assertNotEqual(result.stderr, "")
+
+    def test_wrong_values_are_told_in_a_line(self):
+        scene = self.write("scene.toml", FOURBAR)
+        for option, values, message in (
+                ("--duration", ("0", "-1", "soon", "inf", "nan"), "must be a positive number of seconds"),
+                ("--steps", ("0", "-1", "2.5", "many"), "must be a whole number from 1 to 1000000000")):
+            for value in values:
+                with self.subTest(option=option, value=value):
+                    result = self.expect(USAGE, "koppel", "run", scene, option, value)
+                    self.assertEqual(result.stderr.splitlines()[0], f"{option}: {message}")
+
+    def test_an_empty_name_is_wrong_usage(self):
+        scene = self.write("scene.toml", FOURBAR)
+        for arguments in (["check", ""], ["explain", ""], ["run", ""], ["run", scene, "--csv", ""],
+                          ["run", scene, "--log", ""], ["run", scene, "--lcm", ""], ["run", scene, "--name", ""]):
+            with self.subTest(arguments=arguments):
+                self.assertIn("must not be empty", self.expect(USAGE, "koppel", *arguments).stderr)
+
+    def test_a_stream_that_lcm_cannot_have_is_wrong_usage(self):
+        scene = self.write("scene.toml", FOURBAR)
+        for code, arguments in (("E0801", ["--lcm", "bogus://here"]), ("E0803", ["--lcm", "memq://", "--name", "a b"])):
+            with self.subTest(code=code):
+                self.assertIn(code, self.expect(USAGE, "koppel", "run", scene, *arguments).stderr)
 
 
 class Check(ProgramTest):
@@ -68,16 +93,38 @@ class Check(ProgramTest):
         self.assertIsNone(document["mobility"])
 
     def test_a_mechanism_out_of_reach_does_not_close(self):
-        far = FOURBAR.replace("at = [0.35, 0, 0]", "inlet = \"rocker\"\noutlet = { on = \"ground\", at = [9, 0, 0] }")
-        far = far.replace('between = ["rocker", "ground"]\n', "")
-        document = self.json(NOT_CLOSED, "check", self.write("far.toml", far))
+        document = self.json(NOT_CLOSED, "check", self.write("far.toml", FAR))
         self.assertIs(document["closed"], False)
-        self.assertTrue(document["diagnostics"])
+        self.assertEqual([finding["code"] for finding in document["diagnostics"]], ["E0701"])
+
+    def test_rates_that_are_impossible_are_found(self):
+        scene = self.write("over.toml", OVERDRIVEN)
+        document = self.json(NOT_CLOSED, "check", scene)
+        self.assertIs(document["closed"], True)
+        self.assertEqual([finding["code"] for finding in document["diagnostics"]], ["W0703", "E0703"])
+        self.assertIn("2 inputs, but only 1 freedom\n", self.expect(NOT_CLOSED, "koppel", "check", scene).stderr)
+
+    def test_too_many_inputs_are_told_even_where_they_fit(self):
+        rest = OVERDRIVEN.replace('slope = "360 deg"', "slope = 0").replace("slope = 1.0", "slope = 0")
+        document = self.json(FINE, "check", self.write("rest.toml", rest))
+        self.assertEqual([finding["code"] for finding in document["diagnostics"]], ["W0703"])
 
 
 class Explain(ProgramTest):
     def test_a_code_is_explained(self):
         self.assertIn("cannot be read", self.expect(FINE, "koppel", "explain", "E0101").stdout)
+
+    def test_a_code_may_be_written_small_or_without_its_letter(self):
+        text = self.expect(FINE, "koppel", "explain", "E0701").stdout
+        for code in ("e0701", "0701", "701"):
+            self.assertEqual(self.expect(FINE, "koppel", "explain", code).stdout, text)
+
+    def test_the_code_that_help_shows_exists(self):
+        for arguments in (["--help"], ["explain", "--help"]):
+            codes = re.findall(r"\bE\d{4}\b", self.expect(FINE, "koppel", *arguments).stdout)
+            self.assertTrue(codes)
+            for code in codes:
+                self.expect(FINE, "koppel", "explain", code)
 
     def test_an_unknown_code_is_wrong_usage(self):
         self.expect(USAGE, "koppel", "explain", "E9999")
@@ -109,7 +156,51 @@ class Run(ProgramTest):
         document = self.json(NOT_CLOSED, "run", scene)
         self.assertIs(document["closed"], False)
         self.assertLess(document["steps"], 40)
-        self.assertRegex(document["error"]["code"], r"^E07\d\d$")
+        error = document["error"]
+        self.assertRegex(error["code"], r"^E07\d\d$")
+        self.assertEqual(error["step"], document["steps"] + 1)  # the first closure is no step
+        self.assertEqual(error["time"], error["step"] / 40)
+        self.assertEqual(document["diagnostics"][-1]["code"], error["code"])
+
+    def test_a_run_that_does_not_start_has_the_counts_of_check(self):
+        for text in (FAR, OVERDRIVEN):
+            scene = self.write("scene.toml", text)
+            counts = self.json(NOT_CLOSED, "check", scene)
+            document = self.json(NOT_CLOSED, "run", scene)
+            for key in ("mobility", "jacobian_rank", "equations", "rank"):
+                self.assertEqual(document[key], counts[key])
+            self.assertEqual((document["error"]["step"], document["error"]["time"]), (0, 0.0))
+            self.assertEqual(document["steps"], 0)
+            for key in ("max_residual", "condition", "assembly", "seconds_per_step"):
+                self.assertIsNone(document[key])
+
+    def test_a_run_without_a_step_tells_no_time_of_steps(self):
+        result = self.expect(NOT_CLOSED, "koppel", "run", self.write("locked.toml", LOCKED), "--steps", "2")
+        self.assertIn("0 of 2 steps", result.stdout)
+        self.assertIn("\nassembly ", result.stdout)
+        for line in ("\nstep ", "\niterations "):
+            self.assertNotIn(line, result.stdout)
+
+    def test_findings_of_a_scene_stand_in_json(self):
+        document = self.json(SCENE, "run", self.write("bad.toml", FOURBAR.replace("slope", "slop")))
+        self.assertEqual(document["diagnostics"][0]["code"], document["error"]["code"])
+        self.assertIsNone(document["error"]["step"])
+        self.assertEqual(self.json(FINE, "run", self.write("scene.toml", FOURBAR))["diagnostics"], [])
+
+    def test_the_first_change_of_branch_is_told(self):
+        # Steps of several turns are no continuous motion.
+        arguments = ["run", SCENES / "drive.toml", "--duration", "10", "--steps", "2"]
+        document = self.json(FINE, *arguments)
+        self.assertIs(document["remarks"]["branch_changed"], True)
+        self.assertEqual(document["branch_changed_time"], 5.0)
+        self.assertIn("changes its branch first at t = 5 s: use more steps",
+                      self.expect(FINE, "koppel", *arguments).stdout)
+        self.assertIsNone(self.json(FINE, "run", self.write("scene.toml", FOURBAR))["branch_changed_time"])
+
+    def test_a_mechanism_that_nothing_drives_is_noted(self):
+        scene = self.write("undriven.toml", UNDRIVEN)
+        self.assertEqual(self.expect(FINE, "koppel", "run", scene).stderr, "note: nothing is driven: nothing moves\n")
+        self.assertEqual(self.expect(FINE, "koppel", "run", scene, "--quiet").stderr, "")
 
     def test_the_library_logs_only_when_asked(self):
         scene = self.write("scene.toml", FOURBAR)
@@ -143,8 +234,17 @@ class Table(ProgramTest):
         self.assertEqual(len(lines), 42)
         self.assertIn("40 of 40 steps", result.stderr)
 
+    def test_zero_has_no_sign(self):
+        table = self.expect(FINE, "koppel", "run", SCENES / "4bar.toml", "--steps", "8", "--csv", "-").stdout
+        cells = [cell for line in table.splitlines() for cell in line.split(",")]
+        self.assertIn("0", cells)
+        self.assertNotIn("-0", cells)
+
     def test_a_table_that_cannot_be_written_is_reported(self):
-        self.expect(SYSTEM, "koppel", "run", self.write("scene.toml", FOURBAR), "--csv", "absent/run.csv")
+        scene = self.write("scene.toml", FOURBAR)
+        self.expect(SYSTEM, "koppel", "run", scene, "--csv", "absent/run.csv")
+        error = self.json(SYSTEM, "run", scene, "--csv", "absent/run.csv")["error"]
+        self.assertEqual((error["message"], error["step"]), ("cannot write absent/run.csv", None))
 
 
 class Log(ProgramTest):

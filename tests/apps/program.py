@@ -60,6 +60,21 @@ of = "rocker.angle"
 # The rocker is asked to turn fully, which it cannot: it stops at a dead centre.
 LOCKED = FOURBAR.replace('of = "crank.angle"\ntype', 'of = "rocker.angle"\ntype')
 
+# Both cranks are driven, each at a rate of its own: the start fits, the rates do not.
+OVERDRIVEN = FOURBAR + """[[drive]]
+of = "rocker.angle"
+type = "ramp"
+slope = 1.0
+"""
+
+# The ground's end of the last joint is too far away.
+FAR = FOURBAR.replace(
+    'between = ["rocker", "ground"]\nat = [0.35, 0, 0]',
+    'inlet = "rocker"\noutlet = { on = "ground", at = [9, 0, 0] }',
+)
+
+UNDRIVEN = FOURBAR.replace('[[drive]]\nof = "crank.angle"\ntype = "ramp"\nslope = "360 deg"\n', "")
+
 
 class ProgramTest(unittest.TestCase):
     """A test with a folder of its own."""

@@ -4,7 +4,7 @@ import pathlib
 import re
 import unittest
 
-from program import FINE, ProgramTest
+from program import FINE, FOURBAR, ProgramTest
 
 ROOT = pathlib.Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text()
@@ -25,6 +25,19 @@ class Commands(ProgramTest):
         for line in shown:
             for option in re.findall(r"--[a-z]+", line):
                 self.assertIn(option, known)
+
+    def test_every_code_shown_is_explained(self):
+        codes = re.findall(r"koppel explain ([EWN]\d+)", README)
+        self.assertTrue(codes)
+        for code in codes:
+            self.assertNotEqual(self.expect(FINE, "koppel", "explain", code).stdout, "")
+
+    def test_the_table_of_json_keys_is_complete(self):
+        scene = self.write("fourbar.toml", FOURBAR)
+        rows = re.findall(r"^\| (`.*) \| (.*) \| .* \|$", README, re.MULTILINE)
+        for name in ("check", "run"):
+            told = {key for keys, of in rows if of in ("both", f"`{name}`") for key in re.findall(r"`(\w+)`", keys)}
+            self.assertEqual(set(self.json(FINE, name, scene)) - told, set())
 
 
 class Links(unittest.TestCase):

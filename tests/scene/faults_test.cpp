@@ -70,6 +70,19 @@ const Fault faults[] = {
      "taken"},
     {"body_named_ground", "schema = 1\n[[body]]\nname = 'ground'\n", Code::duplicate_name, 3, "'ground'",
      "always there"},
+    {"uses_of_a_parameter_named_like_a_unit",
+     "schema = 1\n[parameters]\ns = 2\n[scene]\nlength = '2*s'\nduration = 's'\n", Code::bad_name, 3, "s", "a unit"},
+    {"uses_of_a_parameter_with_a_hyphen",
+     "schema = 1\n[parameters]\nrod-length = 1\n[scene]\nlength = '2*rod-length'\n", Code::bad_name, 3, "rod-length",
+     "minus"},
+    {"uses_of_a_body_with_a_dot",
+     "schema = 1\n[[body]]\nname = 'a.b'\n[[joint]]\nname = 'j'\ntype = 'weld'\nbetween = ['ground', 'a.b']\n"
+     "[[record]]\nof = 'a.b'\n",
+     Code::bad_name, 3, "'a.b'", "letters"},
+    {"uses_of_a_joint_with_a_blank",
+     BODIES "[[joint]]\nname = 'my pin'\ntype = 'revolute'\nbetween = ['ground', 'rod']\n"
+            "[[drive]]\nof = 'my pin.angle'\ntype = 'constant'\nvalue = 0\n[[record]]\nof = 'my pin.angle'\n",
+     Code::bad_name, 7, "'my pin'", "letters"},
     {"joint_twice", PIN "[[joint]]\nname = 'pin'\ntype = 'weld'\nbetween = ['ground', 'rod']\n", Code::duplicate_name,
      11, "'pin'", "another name"},
     {"recorded_twice", PIN "[[record]]\nof = 'rod'\n[[record]]\nof = 'rod'\n", Code::duplicate_name, 13, "'rod'",
@@ -115,7 +128,40 @@ const Fault faults[] = {
      "between", "different"},
     {"same_body_by_frames", BODIES "[[joint]]\nname = 'j'\ntype = 'weld'\ninlet = 'rod'\noutlet = {on = 'rod'}\n",
      Code::same_body, 10, "outlet", "different"},
+    {"keys_of_an_unknown_type",
+     BODIES "[[joint]]\nname = 'j'\ntype = 'univrsal'\nbetween = ['ground', 'rod']\naxis2 = [1, 0, 0]\ngrease = 3\n",
+     Code::unknown_type, 8, "'univrsal'", "universal"},
     // Values
+    {"axis_by_letter", PIN "axis = 'x'\n", Code::wrong_kind, 10, "'x'", "write [1, 0, 0]"},
+    {"direction_by_word",
+     BODIES "[[joint]]\nname = 'j'\ntype = 'universal'\nbetween = ['ground', 'rod']\naxis2 = 'up'\n", Code::wrong_kind,
+     10, "'up'", "[x, y, z]"},
+    {"position_in_a_plane", PIN "at = [0, 0.1]\n", Code::wrong_count, 10, "[0, 0.1]", "[x, y, z]"},
+    {"one_in_between", BODIES "[[joint]]\nname = 'j'\ntype = 'weld'\nbetween = ['crank']\n", Code::wrong_count, 9,
+     "['crank']", "between = [\"ground\", \"crank\"]"},
+    {"position_out_of_the_world", PIN "at = [0, -1e12, 0]\n", Code::out_of_range, 10, "-1e12", "within 1e+09 m"},
+    {"length_out_of_the_world", "schema = 1\n[scene]\nlength = '1e10*2'\n", Code::out_of_range, 3, "'1e10*2'",
+     "120 mm"},
+    {"start_out_of_the_world",
+     BODIES
+     "[[joint]]\nname = 'j'\ntype = 'prismatic'\nbetween = ['ground', 'rod']\nstart = { displacement = 1e300 }\n",
+     Code::out_of_range, 10, "1e300", "m"},
+    {"frequency_as_an_angle",
+     PIN "[[drive]]\nof = 'pin.angle'\ntype = 'sine'\namplitude = '3 deg'\nfrequency = '30 deg'\n", Code::wrong_kind,
+     14, "'30 deg'", "Hz"},
+    {"pitch_as_an_angle",
+     BODIES "[[joint]]\nname = 'j'\ntype = 'helical'\nbetween = ['ground', 'rod']\npitch = '3 deg'\n", Code::wrong_kind,
+     10, "'3 deg'", "m/rad"},
+    {"slope_of_an_angle_as_a_length", PIN "[[drive]]\nof = 'pin.angle'\ntype = 'ramp'\nslope = '3 mm'\n",
+     Code::wrong_kind, 13, "'3 mm'", "measured in rad"},
+    {"table_of_angles_with_a_length",
+     PIN "[[drive]]\nof = 'pin.angle'\ntype = 'table'\npoints = [[0, 0], [1, '3 mm']]\n", Code::wrong_kind, 13,
+     "'3 mm'", "measured in rad"},
+    {"rate_per_second", PIN "[[drive]]\nof = 'pin.angle'\ntype = 'ramp'\nslope = '360 deg/s'\n", Code::bad_expression,
+     13, "s", "rates are per second already: write 360 deg"},
+    {"unit_as_divisor", PIN "at = ['2*(3 + 1)/m', 0, 0]\n", Code::bad_expression, 10, "m", "after a number: 1 m"},
+    {"unit_spelt_out", PIN "zero = { angle = '360 degree' }\n", Code::bad_expression, 10, "degree",
+     "units are deg rad rev m cm mm s ms kg g"},
     {"list_for_a_number", BODIES "mass = [1, 2]\n", Code::wrong_kind, 6, "[1, 2]", "a number, not a list"},
     {"boolean_for_a_list", PIN "at = true\n", Code::wrong_kind, 10, "true", "a list of 3, not a boolean"},
     {"date_for_a_number", BODIES "mass = 1979-05-27\n", Code::wrong_kind, 6, "1979-05-27", "a date"},
@@ -128,7 +174,7 @@ const Fault faults[] = {
     {"two_numbers", PIN "at = [0, '2 3', 0]\n", Code::bad_expression, 10, "3", ""},
     {"unknown_word", "schema = 1\n[parameters]\ncrank = 1\n[scene]\nlength = '2*cranc + 1'\n", Code::bad_expression, 5,
      "cranc", "did you mean `crank`?"},
-    {"unknown_unit", PIN "at = ['3 inch', 0, 0]\n", Code::bad_expression, 10, "inch", "unit"},
+    {"unknown_unit", PIN "at = ['3 inch', 0, 0]\n", Code::bad_expression, 10, "inch", "units are deg rad"},
     {"missing_parenthesis", PIN "at = ['2*(3 + 1', 0, 0]\n", Code::bad_expression, 10, "", "parenthesis"},
     {"decimal_comma", PIN "at = ['1,5', 0, 0]\n", Code::bad_expression, 10, "1,5", "point"},
     {"no_gravity", "schema = 1\n[scene]\ngravity = [0, 0]\n", Code::wrong_count, 3, "[0, 0]", "3 entries, not 2"},
@@ -154,7 +200,7 @@ const Fault faults[] = {
     {"driven_twice", DRIVE "[[drive]]\nof = 'pin.angle'\ntype = 'constant'\nvalue = 1\n", Code::driven_twice, 16,
      "'pin.angle'", "line 10"},
     {"drive_of_a_quaternion", BALL "[[drive]]\nof = 'ball.rotation'\ntype = 'constant'\nvalue = 1\n", Code::not_scalar,
-     11, "'ball.rotation'", "one number"},
+     11, "'ball.rotation'", "chain of revolutes or a universal joint"},
     {"limits_of_a_quaternion", BALL "limits = { rotation = [0, 1] }\n", Code::not_scalar, 10, "[0, 1]", "`rotation`"},
     {"zero_of_a_quaternion", BALL "zero = { rotation = 1 }\n", Code::not_scalar, 10, "1", "`rotation`"},
     {"limits_upside_down", PIN "limits = { angle = ['30 deg', '-30 deg'] }\n", Code::bad_limits, 10,
@@ -215,6 +261,32 @@ TEST(Findings, come_together_in_the_order_of_the_text) {
       {4, Code::unknown_type},    {5, Code::unknown_body}, {6, Code::zero_direction}, {9, Code::unknown_key},
       {10, Code::bad_expression}, {11, Code::missing_key}, {14, Code::wrong_kind}};
   EXPECT_EQ(found, expected) << reader.diagnostics.render();
+}
+
+/// What is marked, with the advice, of all errors of a code.
+std::vector<std::pair<std::string, std::string>> advice_of(const SceneReader& reader, Code code) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const Error& error : reader.of(Severity::error)) {
+    if (error.code == code) out.emplace_back(marked(error), error.advice);
+  }
+  return out;
+}
+
+TEST(Findings, tell_of_misspelt_keys_where_the_type_is_missing) {
+  using Advice = std::vector<std::pair<std::string, std::string>>;
+  SceneReader reader;
+  ASSERT_FALSE(
+      reader.read(BODIES "[[joint]]\nname = 'j'\ntyp = 'helical'\nbetwen = ['ground', 'rod']\npitch = 1\nstat = {}\n"));
+  EXPECT_EQ(advice_of(reader, Code::unknown_key), (Advice{{"typ", "did you mean `type`?"},
+                                                          {"betwen", "did you mean `between`?"},
+                                                          {"stat", "did you mean `start`?"}}));
+  ASSERT_FALSE(reader.read(PIN "[[drive]]\nfo = 'pin.angle'\ntyp = 'constant'\nvalue = 1\n"));
+  EXPECT_EQ(advice_of(reader, Code::unknown_key),
+            (Advice{{"fo", "did you mean `of`?"}, {"typ", "did you mean `type`?"}}));
+  ASSERT_FALSE(reader.read("schema = 1\n[[constraint]]\nname = 'c'\ntyp = 'distance'\ndistance = 1\n"));
+  EXPECT_EQ(advice_of(reader, Code::unknown_key), (Advice{{"typ", "did you mean `type`?"}}));
+  ASSERT_FALSE(reader.read("schema = 1\n[[body]]\nname = 'b'\ntype = 'rigd'\nmass = 1\nrotat = []\n"));
+  EXPECT_EQ(advice_of(reader, Code::unknown_key), (Advice{{"rotat", "did you mean `rotate`?"}}));
 }
 
 TEST(Findings, name_the_element) {

@@ -166,6 +166,35 @@ TEST(Include, refuses_a_bad_prefix) {
   EXPECT_EQ(reader.diagnostics.first_error().code, Code::bad_name);
 }
 
+TEST(Include, has_a_prefix_of_its_own) {
+  Folder folder;
+  folder.write("side.toml", side);
+  folder.write("other.toml", "schema = 1\n[[body]]\nname = 'hub'\n");
+  for (const std::string second : {"side.toml", "other.toml"}) {
+    SceneReader reader;
+    ASSERT_FALSE(reader.read("schema = 1\n[[include]]\nfile = 'side.toml'\nprefix = 'left'\n[[include]]\nfile = '" +
+                                 second + "'\nprefix = 'left'\n[[record]]\nof = 'left.hub'\n",
+                             folder.path));
+    ASSERT_EQ(reader.of(Severity::error).size(), 1u) << reader.diagnostics.render();
+    const Error& error = reader.diagnostics.first_error();
+    EXPECT_EQ(error.code, Code::duplicate_name);
+    EXPECT_EQ(error.message, "prefix `left` is taken");
+    EXPECT_EQ(error.source.line, 7);
+    EXPECT_EQ(marked(error), "'left'");
+  }
+}
+
+TEST(Include, is_remembered_where_the_prefix_is_forgotten) {
+  Folder folder;
+  folder.write("side.toml", side);
+  const std::string car = "schema = 1\n[[include]]\nfile = 'side.toml'\nprefix = 'left'\n";
+  SceneReader reader;
+  ASSERT_FALSE(reader.read(car + "[[record]]\nof = 'wheel'\n", folder.path));
+  EXPECT_EQ(reader.diagnostics.first_error().advice, "did you mean `left.wheel`?");
+  ASSERT_FALSE(reader.read(car + "[[record]]\nof = 'strut.displacement'\n", folder.path));
+  EXPECT_EQ(reader.diagnostics.first_error().advice, "did you mean `left.strut`?");
+}
+
 TEST(Include, sees_only_names_of_its_own_file) {
   Folder folder;
   folder.write("part.toml", "schema = 1\n[[frame]]\nname = 'f'\non = 'outer'\n");

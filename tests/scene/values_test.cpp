@@ -33,6 +33,20 @@ TEST(Quantities, are_converted_to_SI) {
   EXPECT_EQ(value_of("1e-3 m"), 0.001);
 }
 
+TEST(Quantities, stand_for_the_numerator_of_a_unit) {
+  SceneReader reader;
+  const Scene scene = reader.good(
+      "schema = 1\n[[body]]\nname = 'b'\n"
+      "[[joint]]\nname = 'j'\ntype = 'helical'\nbetween = ['ground', 'b']\npitch = '5 mm'\n");
+  EXPECT_EQ(scene.joints.at(0).values.at(0).numbers, std::vector<double>{0.005});
+}
+
+TEST(Lengths, reach_as_far_as_any_mechanism) {
+  SceneReader reader;
+  EXPECT_EQ(reader.good("schema = 1\n[scene]\nlength = 1e9\n").length, 1e9);
+  EXPECT_FALSE(reader.read("schema = 1\n[scene]\nlength = 1.001e9\n"));
+}
+
 TEST(Expressions, follow_the_rules_of_arithmetic) {
   EXPECT_EQ(value_of("2 + 3*4"), 14.0);
   EXPECT_EQ(value_of("(2 + 3)*4"), 20.0);

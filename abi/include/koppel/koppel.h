@@ -40,7 +40,7 @@ typedef struct koppel_error {
   int32_t line;     /* from 1; 0: no place in a file */
   int32_t column;   /* from 1, counted in bytes */
   int32_t length;   /* how many bytes it marks */
-  char code[8];     /* "E0312"; koppel_explain_code says more */
+  char code[8];     /* "E0304"; koppel_explain_code says more */
   char file[512];
   char source_line[512]; /* the line itself */
   char element[128];     /* what it is about, e.g. "joint crank" */
@@ -48,7 +48,7 @@ typedef struct koppel_error {
   char advice[512]; /* what to do instead; may be empty */
 } koppel_error;
 
-/* The long explanation of a code such as "E0312". INVALID_ARGUMENT: no such code. */
+/* The long explanation of a code such as "E0304". INVALID_ARGUMENT: no such code. */
 KOPPEL_EXPORT koppel_status koppel_explain_code(const char* code, char* text, size_t size, size_t* needed);
 
 /* ------------------------------------------------------------------------------------------------ engine */

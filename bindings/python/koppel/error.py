@@ -14,7 +14,7 @@ def _decoded(value):
 class Finding:
     """An error, a warning or a note; line, column and length are 0 where there is no place in a file."""
 
-    code: str  # "E0312"; explain() says more
+    code: str  # "E0304"; explain() says more
     severity: str  # "note", "warning" or "error"
     file: str
     line: int  # from 1

@@ -1,0 +1,24 @@
+#include "koppel/at_start.hpp"
+
+namespace koppel::app {
+
+AtStart at_start(const Model& model) {
+  AtStart result;
+  const Motion motion = start(model);
+  koppel_state* state = motion.state.get();
+  koppel_work* work = motion.work.get();
+  koppel_status& status = result.status;
+  status = koppel_state_set_time(state, 0.0, &result.error);
+  if (status >= 0) status = koppel_close(state, work, nullptr, &result.report, &result.error);
+  result.closed = status >= 0;
+  if (status >= 0) status = koppel_velocities(state, work, &result.error);
+  if (status >= 0) status = koppel_accelerations(state, work, &result.error);
+  // The counts are told of an open position too: they may be the reason.
+  auto analysis = sized<koppel_analysis>();
+  const koppel_status analysed = koppel_analyse(state, work, &analysis, status >= 0 ? &result.error : nullptr);
+  if (analysed >= 0) result.analysis = analysis;
+  if (status >= 0 && analysed < 0) status = analysed;
+  return result;
+}
+
+}  // namespace koppel::app

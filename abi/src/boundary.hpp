@@ -28,7 +28,8 @@ koppel_status write_text(std::string_view text, char* buffer, std::size_t size, 
 /// Copies a struct of ours into a caller's that may be older (shorter) or newer (its tail becomes zero).
 template <typename Struct>
 void write_struct(const Struct& from, Struct* to) {
-  const std::uint32_t size = to->struct_size;
+  constexpr std::uint32_t implausible = 1u << 16;  // larger than any version will get: not a size, then
+  const std::uint32_t size = std::min(to->struct_size, implausible);
   const std::size_t common = std::min<std::size_t>(size, sizeof(Struct));
   std::memcpy(to, &from, common);
   if (size > common) std::memset(reinterpret_cast<char*>(to) + common, 0, size - common);

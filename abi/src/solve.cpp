@@ -27,7 +27,7 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, do
     case KOPPEL_RETRY: {
       e.code = status == KOPPEL_RETRY ? Code::retry_smaller : Code::not_closed;
       e.message = "no closed position found at time " + number(time) + " s";
-      if (report != nullptr && std::isfinite(report->residual)) {
+      if (report != nullptr && std::isfinite(report->residual) && report->open_row < m.equation_names.size()) {
         e.message += ": `" + m.equation_names[report->open_row].name + "` stays open by " + number(report->residual) +
                      " (radians, or metres over the length " + number(m.length) + " m)";
       }
@@ -124,7 +124,9 @@ koppel_status koppel_close(koppel_state* state, koppel_work* work, const koppel_
     if (!acceptable(given)) return koppel::invalid_argument("the options name no method, tolerance or limit", error);
     koppel::Report result;
     const koppel_status status = koppel::close(work->work, state->state, options_of(given), result);
-    write_report(*state->mechanism, result, report);
+    if (status >= 0 || status == KOPPEL_NOT_CLOSED || status == KOPPEL_RETRY) {
+      write_report(*state->mechanism, result, report);
+    }
     return status >= 0 ? status : explain_failure(status, work->work, state->state.time, &result, error);
   });
 }
@@ -152,7 +154,9 @@ koppel_status koppel_move(koppel_state* state, koppel_work* work, double time, k
     if (!std::isfinite(time)) return koppel::invalid_argument("time is not finite", error);
     koppel::Report result;
     const koppel_status status = koppel::move(work->work, state->state, time, result);
-    write_report(*state->mechanism, result, report);
+    if (status >= 0 || status == KOPPEL_NOT_CLOSED || status == KOPPEL_RETRY) {
+      write_report(*state->mechanism, result, report);
+    }
     return status >= 0 ? status : explain_failure(status, work->work, time, &result, error);
   });
 }
@@ -160,7 +164,8 @@ koppel_status koppel_move(koppel_state* state, koppel_work* work, double time, k
 koppel_status koppel_analyse(const koppel_state* state, koppel_work* work, koppel_analysis* analysis,
                              koppel_error* error) {
   return koppel::guarded(error, [&]() -> koppel_status {
-    if (!fit(state, work) || analysis == nullptr) return misfit(error);
+    if (!fit(state, work)) return misfit(error);
+    if (analysis == nullptr) return koppel::invalid_argument("analysis is NULL", error);
     koppel::Analysis result;
     if (!koppel::analyse(work->work, state->state, result)) {
       return explain_failure(KOPPEL_PLUGIN, work->work, state->state.time, nullptr, error);

@@ -27,7 +27,9 @@ bool all_finite(const double* values, std::size_t count) {
 koppel_status koppel_state_create(const koppel_mechanism* mechanism, koppel_state** state) {
   return koppel::guarded(nullptr, [&]() -> koppel_status {
     if (mechanism == nullptr || state == nullptr) return KOPPEL_INVALID_ARGUMENT;
-    *state = new koppel_state{mechanism->registry, mechanism->mechanism, koppel::State(*mechanism->mechanism)};
+    koppel::State made(*mechanism->mechanism);
+    if (koppel::set_time(*mechanism->mechanism, 0.0, made) != nullptr) return KOPPEL_PLUGIN;
+    *state = new koppel_state{mechanism->registry, mechanism->mechanism, std::move(made)};
     return KOPPEL_OK;
   });
 }
@@ -66,6 +68,17 @@ koppel_status koppel_state_set(koppel_state* state, int32_t what, const double* 
   }
   state->state.stage = koppel::Stage::assigned;
   return KOPPEL_OK;
+}
+
+koppel_status koppel_limits_exceeded(const koppel_state* state, char* text, size_t size, size_t* needed) {
+  return koppel::guarded(nullptr, [&]() -> koppel_status {
+    if (state == nullptr) return KOPPEL_INVALID_ARGUMENT;
+    std::string names;
+    for (const std::string& name : koppel::limits_exceeded(*state->mechanism, state->state)) {
+      names += (names.empty() ? "" : "\n") + name;
+    }
+    return koppel::write_text(names, text, size, needed);
+  });
 }
 
 koppel_status koppel_state_set_time(koppel_state* state, double time, koppel_error* error) {

@@ -89,7 +89,7 @@ class Run {
   nlohmann::ordered_json to_json() const {
     nlohmann::ordered_json document;
     document["scene"] = model_.name(KOPPEL_KIND_SCENE, 0);
-    document["closed"] = outcome_ != Exit::not_closed;
+    document["closed"] = started_ && outcome_ != Exit::not_closed;
     document["duration"] = duration_;
     add_counts(document, model_.sizes(), analysis_);
     summary_.write(document);
@@ -155,6 +155,11 @@ class Run {
       analysis_ = analysis;
     } else {
       summary_.add(time, status, report, seconds);
+    }
+    if ((status & KOPPEL_LIMIT_EXCEEDED) != 0) {
+      summary_.leave_limits(time, text_of([state](char* text, std::size_t size, std::size_t* needed) {
+                              return koppel_limits_exceeded(state, text, size, needed);
+                            }));
     }
     return write(time, report);
   }

@@ -59,6 +59,13 @@ void Summary::add(double time, koppel_status status, const koppel_report& report
   seconds_.push_back(seconds);
 }
 
+void Summary::leave_limits(double time, std::string names) {
+  if (!limit_names_.empty()) return;
+  limit_time_ = time;
+  std::replace(names.begin(), names.end(), '\n', ' ');
+  limit_names_ = std::move(names);
+}
+
 void Summary::print(std::FILE* out) const {
   std::fprintf(out, "assembly    %u iterations, %.3g ms\n", assembly_iterations_, 1e3 * assembly_seconds_);
   std::fprintf(out, "residual    at most %.1e, at t = %.6g s; coordinates within %.1e\n", worst_residual_, worst_time_,
@@ -79,7 +86,9 @@ void Summary::print(std::FILE* out) const {
   if (branch_changed_time_) {
     std::fprintf(out, "remark      changes its branch first at t = %.6g s: use more steps\n", *branch_changed_time_);
   }
-  if (has(remarks_, KOPPEL_LIMIT_EXCEEDED)) std::fputs("remark      leaves the limits of a coordinate\n", out);
+  if (!limit_names_.empty()) {
+    std::fprintf(out, "remark      leaves the limits of %s first at t = %.6g s\n", limit_names_.c_str(), limit_time_);
+  }
 }
 
 void Summary::write(nlohmann::ordered_json& document) const {

@@ -26,6 +26,9 @@ class Summary {
   /// seconds: what the step took by the wall clock.
   void add(double time, koppel_status status, const koppel_report& report, double seconds);
 
+  /// names: of the coordinates, one in a line. Only the first call counts.
+  void leave_limits(double time, std::string names);
+
   std::uint32_t steps() const { return static_cast<std::uint32_t>(seconds_.size()); }
   void print(std::FILE* out) const;
   void write(nlohmann::ordered_json& document) const;
@@ -46,6 +49,8 @@ class Summary {
   std::uint32_t ceres_steps_ = 0;
   koppel_status remarks_ = KOPPEL_OK;
   std::optional<double> branch_changed_time_;  ///< the first one
+  double limit_time_ = 0.0;                    ///< the first at which a coordinate was outside its limits
+  std::string limit_names_;                    ///< then
   bool assembled_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <mutex>
 #include <set>
 #include <vector>
 
@@ -118,16 +119,26 @@ class RelationCost final : public ceres::CostFunction {
   std::vector<const StateBlock*> blocks_;
 };
 
-/// Keeps Ceres' logger quiet while in scope.
+/// Keeps Ceres' logger, which is one for the whole process, quiet while any thread is in scope; then it is as before.
 class QuietLog {
  public:
-  QuietLog() : before_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
-  ~QuietLog() { FLAGS_minloglevel = before_; }
+  QuietLog() {
+    const std::lock_guard lock(mutex_);
+    if (users_++ > 0) return;
+    before_ = FLAGS_minloglevel;
+    FLAGS_minloglevel = google::GLOG_FATAL;
+  }
+  ~QuietLog() {
+    const std::lock_guard lock(mutex_);
+    if (--users_ == 0) FLAGS_minloglevel = before_;
+  }
   QuietLog(const QuietLog&) = delete;
   QuietLog& operator=(const QuietLog&) = delete;
 
  private:
-  int before_;
+  static inline std::mutex mutex_;
+  static inline int users_ = 0;
+  static inline int before_ = 0;
 };
 
 constexpr std::uint32_t largest_dense_problem = 300;

@@ -1,5 +1,5 @@
 // Closure as a Ceres least-squares problem: one residual block for each loop and constraint with analytic Jacobians,
-// manifolds for quaternions and unit vectors, driven coordinates left out of the parameters. Assembles from far away
+// manifolds for quaternions and unit vectors, driven coordinates held constant. Assembles from far away
 // and copes with redundant and singular cases; the verdict on its result is not Ceres' but the residual's.
 #pragma once
 

@@ -28,6 +28,29 @@ bool rates_taken(const Mechanism& mechanism, const State& state) {
   return true;
 }
 
+/// The position is closed for the inputs and the time that the state has now.
+bool closed_here(const Mechanism& mechanism, const State& state) {
+  return state.stage != Stage::assigned && inputs_taken(mechanism, state) &&
+         (!mechanism.explicit_time || state.time == state.history.time);
+}
+
+/// Puts a state back to what it was, unless it is told that all went well.
+class Restorer {
+ public:
+  Restorer(State& state, const State& before) : state_(state), before_(before) {}
+  Restorer(const Restorer&) = delete;
+  Restorer& operator=(const Restorer&) = delete;
+  ~Restorer() {
+    if (!kept_) state_ = before_;  // same sizes: nothing is allocated
+  }
+  void keep() { kept_ = true; }
+
+ private:
+  State& state_;
+  const State& before_;
+  bool kept_ = false;
+};
+
 /// Jacobian and factorisation where the equations stand.
 void factorise_here(Work& work, const Eigen::VectorXd& q, double time) {
   work.equations.evaluate_jacobian();
@@ -40,6 +63,7 @@ void factorise_here(Work& work, const Eigen::VectorXd& q, double time) {
 /// The same at a given position, unless all of it is there already.
 bool factorise_at(Work& work, const Eigen::VectorXd& q, double time) {
   if (work.factorised && work.factorised_at == q && work.factorised_time == time) return true;
+  work.factorised = false;
   if (!work.equations.evaluate(q, time)) return false;
   factorise_here(work, q, time);
   return true;
@@ -146,7 +170,7 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
 
 koppel_status velocities(Work& work, State& state) {
   const Mechanism& mechanism = *work.mechanism;
-  if (state.stage == Stage::assigned || !inputs_taken(mechanism, state)) return KOPPEL_INVALID_ARGUMENT;
+  if (!closed_here(mechanism, state)) return KOPPEL_INVALID_ARGUMENT;
   if (!factorise_at(work, state.q, state.time)) return KOPPEL_PLUGIN;
   Eigen::VectorXd& v = work.delta;
   v.setZero();
@@ -165,7 +189,11 @@ koppel_status velocities(Work& work, State& state) {
 
 koppel_status accelerations(Work& work, State& state) {
   const Mechanism& mechanism = *work.mechanism;
-  if (state.stage < Stage::velocities || !inputs_taken(mechanism, state)) return KOPPEL_INVALID_ARGUMENT;
+  if (state.stage < Stage::velocities || !closed_here(mechanism, state)) return KOPPEL_INVALID_ARGUMENT;
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    const double asked = state.input_rate[static_cast<Eigen::Index>(i)];
+    if (state.v[mechanism.inputs[i].v] != asked) return KOPPEL_INVALID_ARGUMENT;
+  }
   if (!factorise_at(work, state.q, state.time)) return KOPPEL_PLUGIN;
   Eigen::VectorXd& a = work.delta;
   a.setZero();
@@ -190,20 +218,18 @@ koppel_status accelerations(Work& work, State& state) {
 koppel_status move(Work& work, State& state, double time, Report& report) {
   report = Report{};
   work.saved = state;
-  const auto back = [&](koppel_status status) {
-    state = work.saved;
-    return status;
-  };
+  Restorer restorer(state, work.saved);
   if (const Input* failed = set_time(*work.mechanism, time, state)) {
     work.equations.blame(*failed);
     return KOPPEL_PLUGIN;
   }
   const koppel_status closed = close(work, state, {}, report);
-  if (closed < 0) return back(closed);
+  if (closed < 0) return closed;
   for (const auto step : {velocities, accelerations}) {
     const koppel_status status = step(work, state);
-    if (status < 0) return back(status);
+    if (status < 0) return status;
   }
+  restorer.keep();
   return closed;
 }
 

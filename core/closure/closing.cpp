@@ -17,7 +17,7 @@ constexpr std::uint32_t default_ceres_iterations = 500;
 Closing::Closing(Work& work, const State& state, const CloseOptions& options, Report& report)
     : work_(work), mechanism_(*work.mechanism), state_(state), options_(options), report_(report) {
   newton_.max_iterations = options.max_iterations == 0 ? 50 : options.max_iterations;
-  if (options.tolerance > 0.0) newton_.tolerance = options.tolerance;
+  if (options.tolerance > 0.0) newton_.tolerance = std::min(options.tolerance, closed_limit);
   ceres_iterations_ = options.max_iterations == 0 ? default_ceres_iterations : options.max_iterations;
 }
 

@@ -139,6 +139,8 @@ bool Equations::evaluate_constraint(const Relation& relation, Local& local) {
   const void* instance = constraint.instance.get();
   const koppel_configuration at = configuration(relation, local, false);
   std::fill(local.out.begin(), local.out.end(), std::nan(""));
+  if (relation.has_frames) std::fill(local.by_twist.begin(), local.by_twist.end(), std::nan(""));
+  std::fill(local.by_rate.begin(), local.by_rate.end(), std::nan(""));
   if (constraint.type->calls.residual(1, &instance, &at, local.out.data()) < 0 || !all_finite(local.out) ||
       constraint.type->calls.jacobian(1, &instance, &at, relation.has_frames ? local.by_twist.data() : nullptr,
                                       local.by_rate.empty() ? nullptr : local.by_rate.data()) < 0 ||

@@ -1,6 +1,5 @@
 #include "closure/explain.hpp"
 
-#include <set>
 #include <sstream>
 
 #include "mechanism/names.hpp"
@@ -54,9 +53,6 @@ void explain_relation(const Mechanism& mechanism, const Relation& relation, std:
   out << '\n';
   std::vector<std::string> names;
   for (const JointId joint : relation.joints) names.push_back(mechanism.joints[joint.index()].name);
-  std::set<std::string> coordinates;
-  for (const PathRate& rate : relation.coupled) coordinates.insert(mechanism.rate_names[rate.rate].name);
-  names.insert(names.end(), coordinates.begin(), coordinates.end());
   out << "    depends on " << (names.empty() ? std::string("nothing") : joined(names)) << '\n';
 }
 

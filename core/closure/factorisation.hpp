@@ -1,5 +1,5 @@
 // Rank-revealing factorisation of a scaled Jacobian and minimum-norm least-squares solutions with it. Storage is made
-// once; factorising and solving allocate nothing.
+// once; only a change of rank makes some anew.
 #pragma once
 
 #include <Eigen/Core>

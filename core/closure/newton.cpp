@@ -52,15 +52,17 @@ NewtonResult newton(Work& work, double time, const NewtonOptions& options) {
     if (!std::isfinite(size)) break;
     double factor = std::min(1.0, largest_step / std::max(size, largest_step));
     double trial_norm = norm;
-    int halvings = 0;
-    for (; halvings <= largest_halvings; ++halvings, factor /= 2.0) {
+    bool usable = false;
+    for (int halvings = 0; halvings <= largest_halvings; ++halvings, factor /= 2.0) {
       spread(mechanism, work.step, factor, columns, work.delta);
       integrate(mechanism, work.q, work.delta, work.q_trial);
-      if (!equations.evaluate(work.q_trial, time)) return fail_plugin();
+      usable = equations.evaluate(work.q_trial, time);
+      if (!usable) continue;  // outside what a plugin can answer: nearer it may
       trial_norm = equations.residual.norm();
       if (trial_norm < norm * (1.0 - 1e-4 * factor)) break;
       if (error <= rounding_region) break;  // halving cannot help against rounding
     }
+    if (!usable) return fail_plugin();
     const bool at_rounding = error <= rounding_region && !(trial_norm < 0.5 * norm);
     if (trial_norm < norm) {
       work.q = work.q_trial;

@@ -238,6 +238,10 @@ class Compiler {
         find_path(relation);
       }
       for (const std::uint32_t v : constraint.v) relation.coupled.push_back(path_rate(v, 1.0));
+      for (const CoordinateReference& of : description.coordinates) {
+        const auto known = std::find(relation.joints.begin(), relation.joints.end(), of.joint);
+        if (known == relation.joints.end()) relation.joints.push_back(of.joint);
+      }
       m().relations.push_back(std::move(relation));
     }
   }

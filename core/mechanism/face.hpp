@@ -13,8 +13,6 @@
 
 namespace koppel {
 
-inline constexpr std::size_t max_face_rows = 6;
-
 /// How the outlet may turn against the inlet.
 enum class Turning { none, axis, cross, free };
 

@@ -52,7 +52,7 @@ struct Relation {
   std::uint32_t first_row = 0, rows = 0;
   std::vector<PathRate> path;     ///< rates that move b against a
   std::vector<PathRate> coupled;  ///< of a constraint: its coordinates (sign not used)
-  std::vector<JointId> joints;    ///< tree joints on the path
+  std::vector<JointId> joints;    ///< tree joints on the path, and those of the coordinates
   std::optional<Face> face;       ///< cut_joint only
 };
 

@@ -33,7 +33,12 @@ Instance& Instance::operator=(Instance&& other) noexcept {
 
 Instance::~Instance() {
   // library_ is released after this body: the code of destroy_ is still there.
-  if (pointer_ != nullptr && destroy_ != nullptr) destroy_(pointer_);
+  if (pointer_ != nullptr && destroy_ != nullptr) {
+    guarded([this]() -> koppel_status {
+      destroy_(pointer_);
+      return KOPPEL_OK;
+    });
+  }
 }
 
 namespace {

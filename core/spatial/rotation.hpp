@@ -35,8 +35,8 @@ Matrix3T<T> rotation_about(const Vector3T<T>& u, const T& angle) {
   return rotation_about<T>(u, cos(angle), sin(angle));
 }
 
-/// Matrix of a quaternion w x y z (C-8). The quaternion need not be exactly of unit length: the result is that of the
-/// normalised one to first order in the deviation.
+/// Matrix of a quaternion w x y z (C-8). The quaternion need not be of unit length: the result is that of the
+/// normalised one.
 template <typename T>
 Matrix3T<T> rotation_of_quaternion(const Vector4T<T>& q) {
   const T s = T(2) / q.squaredNorm();

@@ -104,7 +104,14 @@ class Publisher::Worker {
 
   void start() {
     const SignalsBlocked blocked;
-    thread_ = std::thread([this] { run(); });
+    thread_ = std::thread([this] {
+      try {
+        run();
+      } catch (...) {  // no memory, or the host's log: the stream ends, the process does not
+        broken_.store(true, std::memory_order_relaxed);
+        outbox_.give_up();
+      }
+    });
   }
   void join() {
     outbox_.close();

@@ -160,6 +160,9 @@ static void moves(koppel_state* state, koppel_work* work, size_t frame, const ko
     CHECK(report.residual < 1e-13);
   }
   CHECK(koppel_state_time(state) == 1.0);
+  char names[8] = "#";
+  CHECK_OK(koppel_limits_exceeded(state, names, sizeof names, NULL));
+  CHECK(names[0] == '\0'); /* the scene sets none */
   CHECK_OK(koppel_poses(state, work, KOPPEL_KIND_FRAME, poses, 12 * (size_t)sizes->frames));
   CHECK_NEAR(poses[12 * frame + 9], 0.000131326, 0.5e-9); /* X-5LINK at +80 mm */
   CHECK_NEAR(poses[12 * frame + 10], -0.749874340, 0.5e-9);

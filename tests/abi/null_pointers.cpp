@@ -101,6 +101,7 @@ TEST_F(NullPointers, OfStatesAreRefused) {
   EXPECT_EQ(koppel_state_set(state, KOPPEL_Q, nullptr, host.sizes.coordinates), refused);
   EXPECT_EQ(koppel_state_set_time(nullptr, 0.0, nullptr), refused);
   EXPECT_EQ(koppel_state_time(nullptr), 0.0);
+  EXPECT_EQ(koppel_limits_exceeded(nullptr, nullptr, 0, nullptr), refused);
   EXPECT_EQ(koppel_state_set_input(nullptr, 0, 0.0, 0.0, 0.0), refused);
   EXPECT_TRUE(out.untouched());
   EXPECT_TRUE(read(host) == before);

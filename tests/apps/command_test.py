@@ -197,6 +197,13 @@ class Run(ProgramTest):
                       self.expect(FINE, "koppel", *arguments).stdout)
         self.assertIsNone(self.json(FINE, "run", self.write("scene.toml", FOURBAR))["branch_changed_time"])
 
+    def test_the_coordinate_that_leaves_its_limits_is_named(self):
+        text = FOURBAR.replace("at = [0, 0, 0]", 'at = [0, 0, 0]\nlimits = { angle = [0, "90 deg"] }', 1)
+        scene = self.write("limited.toml", text)
+        self.assertIn("leaves the limits of crank.angle first at t = 0.26 s",
+                      self.expect(FINE, "koppel", "run", scene, "--steps", "50").stdout)
+        self.assertIs(self.json(FINE, "run", scene, "--steps", "50")["remarks"]["limit_exceeded"], True)
+
     def test_a_mechanism_that_nothing_drives_is_noted(self):
         scene = self.write("undriven.toml", UNDRIVEN)
         self.assertEqual(self.expect(FINE, "koppel", "run", scene).stderr, "note: nothing is driven: nothing moves\n")

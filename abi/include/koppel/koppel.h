@@ -60,7 +60,9 @@ typedef struct koppel_engine_options {
   /* A folder with the standard plugins as shared objects, to be used instead of the linked-in ones. NULL: the
    * environment variable KOPPEL_STANDARD_PLUGINS, or if that is unset the linked-in ones. */
   const char* standard_plugins;
-  /* Receives log lines of at least log_level; may be called from the stream's thread too. NULL: no logging. */
+  /* Receives log lines of at least log_level; may be called from the stream's thread too,
+   * and must not call the library. It and log_context must outlive every handle made with the engine. NULL: no logging.
+   */
   void (*log)(void* context, int32_t level, const char* message);
   void* log_context;
   int32_t log_level; /* KOPPEL_LOG_DEBUG ... */
@@ -133,7 +135,7 @@ typedef struct koppel_settings {
   double duration;   /* [s] of a run, as the scene proposes */
   double length;     /* [m] characteristic length: residuals in metres are divided by it */
   double gravity[3]; /* [m/s^2] */
-  uint64_t hash;     /* of the scene's content and the library version */
+  uint64_t hash;     /* of the scene's content */
 } koppel_settings;
 
 KOPPEL_EXPORT koppel_status koppel_mechanism_settings(const koppel_mechanism* mechanism, koppel_settings* settings);
@@ -185,7 +187,7 @@ KOPPEL_EXPORT koppel_status koppel_body_inertia(const koppel_mechanism* mechanis
 
 /* ------------------------------------------------------------------------------------------------ state */
 
-/* A state at time 0 with the scene's start values; not closed yet. */
+/* A state at time 0 with the scene's start values; not closed yet. PLUGIN: a drive has no finite value at time 0. */
 KOPPEL_EXPORT koppel_status koppel_state_create(const koppel_mechanism* mechanism, koppel_state** state);
 KOPPEL_EXPORT void koppel_state_destroy(koppel_state* state);
 /* Both must belong to the same mechanism. */
@@ -198,6 +200,8 @@ enum { KOPPEL_Q = 1, KOPPEL_V = 2, KOPPEL_A = 3 };
 KOPPEL_EXPORT koppel_status koppel_state_get(const koppel_state* state, int32_t what, double* values, size_t count);
 /* Sets a start for the next close, of all coordinates; quaternions are normalised. The inputs keep their values. */
 KOPPEL_EXPORT koppel_status koppel_state_set(koppel_state* state, int32_t what, const double* values, size_t count);
+/* Names of the coordinates that lie outside the limits the scene gives them, one in a line; "" if there are none. */
+KOPPEL_EXPORT koppel_status koppel_limits_exceeded(const koppel_state* state, char* text, size_t size, size_t* needed);
 /* Moves to a time: every input takes value, rate and acceleration from its drive. */
 KOPPEL_EXPORT koppel_status koppel_state_set_time(koppel_state* state, double time, koppel_error* error);
 KOPPEL_EXPORT double koppel_state_time(const koppel_state* state);
@@ -240,7 +244,7 @@ typedef struct koppel_close_options {
   uint32_t struct_size;
   int32_t method;          /* AUTO: Newton, then Ceres */
   uint32_t max_iterations; /* 0: 50 for Newton, 500 for Ceres */
-  double tolerance;        /* 0: down to rounding */
+  double tolerance;        /* of the residual; 0: down to rounding; nothing above 1e-10 counts as closed */
 } koppel_close_options;
 
 /* Closes the loops with the inputs held at their values. A state that is closed stays as it is, bit for bit; if it

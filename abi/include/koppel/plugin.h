@@ -12,6 +12,7 @@
  * - A capability is a function pointer that is not NULL.
  * - Callbacks that evaluate take `count` instances at once; each array argument holds the items one after another.
  *   They may be called from several threads at the same time: instances hold parameters only and do not change.
+ * - No function of a plugin throws.
  * - Strings and tables that a plugin hands out live as long as the library; what the engine hands in lives until the
  *   call returns.
  */
@@ -41,7 +42,7 @@ typedef int32_t koppel_status;
 enum {
   KOPPEL_OK = 0,
   KOPPEL_REDUNDANT = 1,      /* closed; some equations say the same as others */
-  KOPPEL_BRANCH_CHANGED = 2, /* reserved: the solution belongs to another branch than the last */
+  KOPPEL_BRANCH_CHANGED = 2, /* closed, but only by a jump from the last position */
   KOPPEL_NEAR_SINGULAR = 4,  /* closed; the position is badly conditioned */
   KOPPEL_LIMIT_EXCEEDED = 8, /* closed; a coordinate lies outside its limits */
   KOPPEL_RETRY = -1,         /* state untouched; a smaller step may succeed */
@@ -273,7 +274,7 @@ typedef struct koppel_plugin_entry {
   const char* name;   /* "vendor" */
   /* Called once before the first use; may refuse a host (KOPPEL_VERSION). NULL: nothing to do. */
   koppel_status (*init)(const koppel_host* host);
-  void (*deinit)(void); /* called when the engine is destroyed, if init succeeded; NULL: nothing to do */
+  void (*deinit)(void); /* called when the last handle that needs the plugin is freed; NULL: nothing to do */
   /* The index-th type table of an interface: const koppel_joint_type * for KOPPEL_JOINT_INTERFACE and so on. NULL
    * past the last one, and for interfaces that the plugin does not know. */
   const void* (*type_table)(const char* interface_id, size_t index);

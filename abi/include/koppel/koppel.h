@@ -282,7 +282,8 @@ KOPPEL_EXPORT koppel_status koppel_analyse(const koppel_state* state, koppel_wor
  * count, here and below: of numbers, so 12 times the bodies. */
 KOPPEL_EXPORT koppel_status koppel_poses(const koppel_state* state, koppel_work* work, int32_t what, double* poses,
                                          size_t count);
-/* Twists in world axes, each at its own frame's origin: 6 numbers each. */
+/* Twists in world axes, each at its own frame's origin: 6 numbers each. They, accelerations and records are those of
+ * the v and a that the state holds: after koppel_close compute them anew first. */
 KOPPEL_EXPORT koppel_status koppel_twists(const koppel_state* state, koppel_work* work, int32_t what, double* twists,
                                           size_t count);
 /* [angular acceleration; acceleration of the origin] in world axes: 6 numbers each. */

@@ -95,14 +95,12 @@ void read_subject(Reading& reading, Scope& scope, const TableReader& table, cons
     record.subject = RecordSubject::frame;
     if (const auto frame = read_attachment(reading, scope, table.values(), of, "`of`")) record.frame = *frame;
     choose(of_frames, asked, report, "a frame", record.quantity);
-  } else if (joint && type == nullptr) {
-    return;  // the joint is faulty, which has been reported
-  } else if (joint) {
+  } else if (type != nullptr) {
     report.error(Code::unknown_quantity, of.place, quote(of.text) + " is a joint; here a coordinate or frame is needed",
                  turning ? "add quantity = \"cardan\", or name a coordinate: " + coordinates_text(*type)
                          : "write \"joint.coordinate\": " + coordinates_text(*type));
-  } else if (reading.names.is_lost(scope.prefix, of.text)) {
-    return;  // the same of a frame
+  } else if (joint || reading.names.is_lost(scope.prefix, of.text)) {
+    return;  // the joint or frame is faulty, which has been reported
   } else if (means_coordinate(reading, scope.prefix, of.text)) {
     const auto coordinate = read_coordinate(reading, scope, report, of);
     if (coordinate) {

@@ -12,6 +12,7 @@ std::string nearest_advice(std::string_view name, const std::vector<std::string>
   std::string advice = did_you_mean(name, candidates);
   if (!advice.empty()) return advice;
   std::vector<std::string> ends;
+  ends.reserve(candidates.size());
   for (const std::string& candidate : candidates) ends.push_back(candidate.substr(candidate.rfind('.') + 1));
   const auto nearest = nearest_name(name, ends);
   if (!nearest) return {};

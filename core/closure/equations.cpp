@@ -46,7 +46,7 @@ Equations::Equations(const Mechanism& m)
       locals_(m.relations.size()) {
   for (std::size_t i = 0; i < m.relations.size(); ++i) {
     const Relation& relation = m.relations[i];
-    locals_[i].by_twist.assign(6 * relation.rows, 0.0);
+    locals_[i].by_twist.assign(std::size_t{6} * relation.rows, 0.0);
     locals_[i].by_rate.assign(relation.coupled.size() * relation.rows, 0.0);
     locals_[i].q.assign(relation.coupled.size(), 0.0);
     locals_[i].v.assign(relation.coupled.size(), 0.0);
@@ -256,7 +256,7 @@ bool Equations::bias(const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::
       }
     }
     for (std::uint32_t k = 0; k < relation.rows; ++k) {
-      const Eigen::Map<const Vector6> row(local.by_twist.data() + 6 * k);
+      const Eigen::Map<const Vector6> row(local.by_twist.data() + std::size_t{6} * k);
       result[relation.first_row + k] = mechanism.row_scale[relation.first_row + k] * (local.out[k] + row.dot(rate));
     }
   }

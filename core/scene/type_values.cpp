@@ -131,10 +131,10 @@ class ParameterReader {
       const bool high = parameter.maximum && number > *parameter.maximum;
       if (!low && !high) continue;
       const double bound = low ? *parameter.minimum : *parameter.maximum;
-      values_.report().error(Code::out_of_range, node.place,
-                             what + " must be " + (low ? "at least " : "at most ") + number_text(bound) + unit +
-                                 ", and is " + number_text(number) + unit,
-                             parameter.doc);
+      std::string message = what;
+      message.append(low ? " must be at least " : " must be at most ").append(number_text(bound)).append(unit);
+      message.append(", and is ").append(number_text(number)).append(unit);
+      values_.report().error(Code::out_of_range, node.place, message, parameter.doc);
       return;
     }
   }

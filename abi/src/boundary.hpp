@@ -22,6 +22,11 @@ koppel_status fail(const Error& error, koppel_error* out);
 koppel_status fail(koppel_status status, const Error& error, koppel_error* out);
 koppel_status invalid_argument(std::string message, koppel_error* out);
 
+/// Both are there and belong to the same mechanism.
+inline bool fit(const koppel_state* state, const koppel_work* work) {
+  return state != nullptr && work != nullptr && state->mechanism == work->work.mechanism;
+}
+
 /// Writes a text as koppel.h promises.
 koppel_status write_text(std::string_view text, char* buffer, std::size_t size, std::size_t* needed);
 

@@ -8,10 +8,6 @@ using koppel::Attachment;
 using koppel::Mechanism;
 using koppel::Pose;
 
-bool fit(const koppel_state* state, const koppel_work* work) {
-  return state != nullptr && work != nullptr && state->mechanism == work->work.mechanism;
-}
-
 bool has_poses(std::int32_t what) { return what == KOPPEL_KIND_BODY || what == KOPPEL_KIND_FRAME; }
 
 std::size_t count_of(const Mechanism& m, std::int32_t what) {
@@ -28,7 +24,7 @@ template <typename Write>
 koppel_status each(const koppel_state* state, koppel_work* work, std::int32_t what, double* out, std::size_t count,
                    std::size_t size, const Write& write) {
   return koppel::guarded(nullptr, [&]() -> koppel_status {
-    if (!fit(state, work) || !has_poses(what)) return KOPPEL_INVALID_ARGUMENT;
+    if (!koppel::fit(state, work) || !has_poses(what)) return KOPPEL_INVALID_ARGUMENT;
     const Mechanism& m = *state->mechanism;
     const std::size_t things = count_of(m, what);
     if (count != size * things || (out == nullptr && count > 0)) return KOPPEL_INVALID_ARGUMENT;
@@ -73,7 +69,7 @@ koppel_status koppel_frame_accelerations(const koppel_state* state, koppel_work*
 koppel_status koppel_jacobian(const koppel_state* state, koppel_work* work, int32_t what, size_t index,
                               double* jacobian, double* rate, size_t count) {
   return koppel::guarded(nullptr, [&]() -> koppel_status {
-    if (!fit(state, work) || jacobian == nullptr || !has_poses(what)) return KOPPEL_INVALID_ARGUMENT;
+    if (!koppel::fit(state, work) || jacobian == nullptr || !has_poses(what)) return KOPPEL_INVALID_ARGUMENT;
     const Mechanism& m = *state->mechanism;
     if (index >= count_of(m, what) || count != std::size_t{6} * m.nv) return KOPPEL_INVALID_ARGUMENT;
     if (!koppel::realise(work->work, state->state)) return KOPPEL_PLUGIN;
@@ -95,7 +91,7 @@ koppel_status koppel_jacobian(const koppel_state* state, koppel_work* work, int3
 
 koppel_status koppel_records(const koppel_state* state, koppel_work* work, double* values, size_t count) {
   return koppel::guarded(nullptr, [&]() -> koppel_status {
-    if (!fit(state, work) || values == nullptr) return KOPPEL_INVALID_ARGUMENT;
+    if (!koppel::fit(state, work) || values == nullptr) return KOPPEL_INVALID_ARGUMENT;
     if (count != state->mechanism->record_columns.size()) return KOPPEL_INVALID_ARGUMENT;
     if (!koppel::realise(work->work, state->state)) return KOPPEL_PLUGIN;
     koppel::evaluate_records(*state->mechanism, state->state, work->work.equations.kinematics, values);

@@ -88,10 +88,6 @@ void write_report(const koppel::Mechanism& m, const koppel::Report& report, kopp
   koppel::write_struct(out, to);
 }
 
-bool fit(const koppel_state* state, const koppel_work* work) {
-  return state != nullptr && work != nullptr && state->mechanism == work->work.mechanism;
-}
-
 koppel_status misfit(koppel_error* error) {
   return koppel::invalid_argument("state or work is NULL, or they belong to different mechanisms", error);
 }
@@ -119,7 +115,7 @@ void koppel_work_destroy(koppel_work* work) { delete work; }
 koppel_status koppel_close(koppel_state* state, koppel_work* work, const koppel_close_options* options,
                            koppel_report* report, koppel_error* error) {
   return koppel::guarded(error, [&]() -> koppel_status {
-    if (!fit(state, work)) return misfit(error);
+    if (!koppel::fit(state, work)) return misfit(error);
     const koppel_close_options given = koppel::read_struct(options);
     if (!acceptable(given)) return koppel::invalid_argument("the options name no method, tolerance or limit", error);
     koppel::Report result;
@@ -133,7 +129,7 @@ koppel_status koppel_close(koppel_state* state, koppel_work* work, const koppel_
 
 koppel_status koppel_velocities(koppel_state* state, koppel_work* work, koppel_error* error) {
   return koppel::guarded(error, [&]() -> koppel_status {
-    if (!fit(state, work)) return misfit(error);
+    if (!koppel::fit(state, work)) return misfit(error);
     const koppel_status status = koppel::velocities(work->work, state->state);
     return status >= 0 ? status : explain_failure(status, work->work, state->state.time, nullptr, error);
   });
@@ -141,7 +137,7 @@ koppel_status koppel_velocities(koppel_state* state, koppel_work* work, koppel_e
 
 koppel_status koppel_accelerations(koppel_state* state, koppel_work* work, koppel_error* error) {
   return koppel::guarded(error, [&]() -> koppel_status {
-    if (!fit(state, work)) return misfit(error);
+    if (!koppel::fit(state, work)) return misfit(error);
     const koppel_status status = koppel::accelerations(work->work, state->state);
     return status >= 0 ? status : explain_failure(status, work->work, state->state.time, nullptr, error);
   });
@@ -150,7 +146,7 @@ koppel_status koppel_accelerations(koppel_state* state, koppel_work* work, koppe
 koppel_status koppel_move(koppel_state* state, koppel_work* work, double time, koppel_report* report,
                           koppel_error* error) {
   return koppel::guarded(error, [&]() -> koppel_status {
-    if (!fit(state, work)) return misfit(error);
+    if (!koppel::fit(state, work)) return misfit(error);
     if (!std::isfinite(time)) return koppel::invalid_argument("time is not finite", error);
     koppel::Report result;
     const koppel_status status = koppel::move(work->work, state->state, time, result);
@@ -164,7 +160,7 @@ koppel_status koppel_move(koppel_state* state, koppel_work* work, double time, k
 koppel_status koppel_analyse(const koppel_state* state, koppel_work* work, koppel_analysis* analysis,
                              koppel_error* error) {
   return koppel::guarded(error, [&]() -> koppel_status {
-    if (!fit(state, work)) return misfit(error);
+    if (!koppel::fit(state, work)) return misfit(error);
     if (analysis == nullptr) return koppel::invalid_argument("analysis is NULL", error);
     koppel::Analysis result;
     if (!koppel::analyse(work->work, state->state, result)) {

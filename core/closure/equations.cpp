@@ -5,7 +5,7 @@
 
 #include <Eigen/QR>
 
-#include "spatial/rotation.hpp"
+#include "spatial/rotation_vector.hpp"
 
 namespace koppel {
 namespace {
@@ -102,7 +102,7 @@ bool Equations::evaluate_relation(const Relation& relation, Local& local, const 
              joint_failed(relation.joint);
     }
     case RelationKind::cut_body: {
-      const Vector3 phi = rotation_vector<double>(local.relative.rotation);
+      const Vector3 phi = rotation_vector_of_rotation<double>(local.relative.rotation);
       Eigen::Map<Vector6>(local.out.data()) << phi, local.relative.position;
       Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> jacobian_of_twist(local.by_twist.data());
       jacobian_of_twist.topLeftCorner<3, 3>() = right_jacobian_inverse<double>(phi);
@@ -211,9 +211,9 @@ bool Equations::motion(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const
   return forward_motion(mechanism, q.data(), v.data(), a.data(), kinematics) || joint_failed(kinematics.culprit);
 }
 
-RelativeMotion Equations::relation_motion(const Relation& relation, const Local& local) const {
-  return relative_motion(local.a, motion_of(kinematics, relation.node_a, relation.pose_a.position), local.b,
-                         motion_of(kinematics, relation.node_b, relation.pose_b.position));
+RelativeTwist Equations::relation_motion(const Relation& relation, const Local& local) const {
+  return relative_twist(local.a, motion_of(kinematics, relation.node_a, relation.pose_a.position), local.b,
+                        motion_of(kinematics, relation.node_b, relation.pose_b.position));
 }
 
 bool Equations::cut_rates(const Eigen::VectorXd& q, Eigen::VectorXd& v) {
@@ -235,7 +235,7 @@ bool Equations::bias(const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::
     std::fill(local.out.begin(), local.out.end(), 0.0);
     Vector6 rate = Vector6::Zero();
     if (relation.has_frames) {
-      const RelativeMotion relative = relation_motion(relation, local);
+      const RelativeTwist relative = relation_motion(relation, local);
       rate = relative.rate;
       Eigen::Map<Vector6>(twist_array_.data()) = relative.twist;
     }

@@ -64,7 +64,7 @@ class Equations {
   bool evaluate_relation(const Relation& relation, Local& local, const Eigen::VectorXd& q);
   bool evaluate_constraint(const Relation& relation, Local& local);
   koppel_configuration configuration(const Relation& relation, const Local& local, bool with_rates);
-  RelativeMotion relation_motion(const Relation& relation, const Local& local) const;
+  RelativeTwist relation_motion(const Relation& relation, const Local& local) const;
   bool joint_failed(JointId joint);
   bool constraint_failed(std::uint32_t constraint);
 

@@ -5,7 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "spatial/rotation.hpp"
+#include "spatial/rotation_vector.hpp"
+#include "spatial/vector.hpp"
 
 namespace koppel {
 namespace {

@@ -6,7 +6,8 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "spatial/rotation.hpp"
+#include "spatial/rotation_vector.hpp"
+#include "spatial/vector.hpp"
 
 namespace koppel {
 namespace {
@@ -62,15 +63,16 @@ std::optional<Face> Face::of(const Joint& joint) {
     face.rows_ = joint.type->rows;
     return face;
   }
-  for (const Motion& motion : joint.motions()) {
-    if (motion.kind == MotionKind::screw || !motion.point.isZero()) return std::nullopt;
-    if (motion.kind != MotionKind::translation) {
+  for (const ElementaryMotion& motion : joint.motions()) {
+    if (motion.kind == ElementaryMotionKind::screw || !motion.point.isZero()) return std::nullopt;
+    if (motion.kind != ElementaryMotionKind::translation) {
       face.rotations_.push_back(motion);
       continue;
     }
     // A translation after a rotation is one before it only if it runs along the axis.
-    for (const Motion& before : face.rotations_) {
-      if (before.kind == MotionKind::free_rotation || !parallel(before.axis, motion.axis)) return std::nullopt;
+    for (const ElementaryMotion& before : face.rotations_) {
+      if (before.kind == ElementaryMotionKind::free_rotation || !parallel(before.axis, motion.axis))
+        return std::nullopt;
     }
     face.translations_.push_back(motion);
   }
@@ -79,9 +81,9 @@ std::optional<Face> Face::of(const Joint& joint) {
   if (turns.empty()) {
     face.turning_ = Turning::none;
   } else if (turns.size() == 1) {
-    face.turning_ = turns[0].kind == MotionKind::free_rotation ? Turning::free : Turning::axis;
-  } else if (turns.size() == 2 && turns[0].kind == MotionKind::rotation && turns[1].kind == MotionKind::rotation &&
-             !parallel(turns[0].axis, turns[1].axis)) {
+    face.turning_ = turns[0].kind == ElementaryMotionKind::free_rotation ? Turning::free : Turning::axis;
+  } else if (turns.size() == 2 && turns[0].kind == ElementaryMotionKind::rotation &&
+             turns[1].kind == ElementaryMotionKind::rotation && !parallel(turns[0].axis, turns[1].axis)) {
     face.turning_ = Turning::cross;
   } else {
     return std::nullopt;
@@ -132,7 +134,7 @@ void Face::turning_rows(const Pose& pose, double* residual, double* jacobian) co
   switch (turning_) {
     case Turning::free: return;
     case Turning::none: {
-      const Vector3 phi = rotation_vector<double>(r);
+      const Vector3 phi = rotation_vector_of_rotation<double>(r);
       Eigen::Map<Vector3>(residual, 3) = phi;
       JacobianRows(jacobian, 3, 6).leftCols<3>() = right_jacobian_inverse<double>(phi);
       return;
@@ -183,7 +185,7 @@ bool Face::coordinates(const Joint& joint, const Pose& pose, double* joint_q) co
       joint_q[translations_[i].q] = s[static_cast<Eigen::Index>(i)] + translations_[i].zero;
     }
   }
-  const auto set_angle = [joint_q](const Motion& motion, double angle) {
+  const auto set_angle = [joint_q](const ElementaryMotion& motion, double angle) {
     joint_q[motion.q] = unwrapped(angle + motion.zero, joint_q[motion.q]);
   };
   switch (turning_) {

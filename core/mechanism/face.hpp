@@ -38,10 +38,10 @@ class Face {
   bool from_plugin_ = false;
   std::vector<Row> rows_;
   std::vector<Vector3> fixed_directions_;  ///< of the inlet: no motion along these
-  std::vector<Motion> translations_;
+  std::vector<ElementaryMotion> translations_;
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, 3, 3> translation_inverse_;
   Turning turning_ = Turning::none;
-  std::vector<Motion> rotations_;
+  std::vector<ElementaryMotion> rotations_;
 };
 
 }  // namespace koppel

@@ -6,32 +6,34 @@
 
 #include "mechanism/coordinates.hpp"
 #include "plugin/motion.hpp"
+#include "spatial/quaternion.hpp"
 #include "spatial/rotation.hpp"
 
 namespace koppel {
 namespace {
 
-Motion compiled(const koppel_motion& from, const JointBlock& block) {
-  Motion motion;
+ElementaryMotion compiled(const koppel_motion& from, const JointBlock& block) {
+  ElementaryMotion motion;
   switch (from.kind) {
-    case KOPPEL_MOTION_ROTATION: motion.kind = MotionKind::rotation; break;
-    case KOPPEL_MOTION_TRANSLATION: motion.kind = MotionKind::translation; break;
-    case KOPPEL_MOTION_SCREW: motion.kind = MotionKind::screw; break;
-    default: motion.kind = MotionKind::free_rotation; break;
+    case KOPPEL_MOTION_ROTATION: motion.kind = ElementaryMotionKind::rotation; break;
+    case KOPPEL_MOTION_TRANSLATION: motion.kind = ElementaryMotionKind::translation; break;
+    case KOPPEL_MOTION_SCREW: motion.kind = ElementaryMotionKind::screw; break;
+    default: motion.kind = ElementaryMotionKind::free_rotation; break;
   }
   motion.q = block.q;
   motion.v = block.v;
   motion.zero = block.described.zero;
   motion.axis = Vector3(from.axis[0], from.axis[1], from.axis[2]);
-  if (motion.kind != MotionKind::translation) motion.point = Vector3(from.point[0], from.point[1], from.point[2]);
-  if (motion.kind == MotionKind::screw) motion.pitch = from.pitch;
+  if (motion.kind != ElementaryMotionKind::translation)
+    motion.point = Vector3(from.point[0], from.point[1], from.point[2]);
+  if (motion.kind == ElementaryMotionKind::screw) motion.pitch = from.pitch;
   return motion;
 }
 
 /// Applies one elementary motion, or its inverse, to a frame and writes its columns.
-void step_one(const Motion& motion, const double* q, bool reversed, Pose& frame, Column* columns) {
+void step_one(const ElementaryMotion& motion, const double* q, bool reversed, Pose& frame, Column* columns) {
   const double sign = reversed ? -1.0 : 1.0;
-  if (motion.kind == MotionKind::free_rotation) {
+  if (motion.kind == ElementaryMotionKind::free_rotation) {
     const Matrix3 turn = rotation_of_quaternion<double>(Vector4(q[0], q[1], q[2], q[3]));
     const Vector3 centre = frame * motion.point;
     const Matrix3 before = frame.rotation;
@@ -44,7 +46,7 @@ void step_one(const Motion& motion, const double* q, bool reversed, Pose& frame,
   }
   const double value = sign * (q[0] - motion.zero);
   const Vector3 axis = frame.rotation * motion.axis;
-  if (motion.kind == MotionKind::translation) {
+  if (motion.kind == ElementaryMotionKind::translation) {
     frame.position += value * axis;
     columns[0] = {Vector3::Zero(), sign * axis, frame.position};
     return;
@@ -57,12 +59,12 @@ void step_one(const Motion& motion, const double* q, bool reversed, Pose& frame,
 }
 
 /// Carries a motion over one elementary motion whose columns are given (K-II-2.1).
-void step_motion_one(const Motion& motion, const double* v, const double* a, const Column* columns,
+void step_motion_one(const ElementaryMotion& motion, const double* v, const double* a, const Column* columns,
                      FrameMotion& state) {
   state.shift(columns[0].point);
   Vector3 turn = Vector3::Zero(), slide = Vector3::Zero();
   Vector3 turn_rate = Vector3::Zero(), slide_rate = Vector3::Zero();
-  const int count = motion.kind == MotionKind::free_rotation ? 3 : 1;
+  const int count = motion.kind == ElementaryMotionKind::free_rotation ? 3 : 1;
   for (int i = 0; i < count; ++i) {
     turn += v[i] * columns[i].angular;
     slide += v[i] * columns[i].linear;
@@ -117,7 +119,7 @@ bool Joint::step(const double* joint_q, bool reversed, Pose& frame, Column* colu
   if (is_product()) {
     const std::size_t n = motions_.size();
     for (std::size_t i = 0; i < n; ++i) {
-      const Motion& motion = motions_[reversed ? n - 1 - i : i];
+      const ElementaryMotion& motion = motions_[reversed ? n - 1 - i : i];
       step_one(motion, joint_q + motion.q, reversed, frame, columns + motion.v);
     }
     return true;
@@ -141,7 +143,7 @@ bool Joint::step_motion(const double* joint_q, const double* joint_v, const doub
   if (is_product()) {
     const std::size_t n = motions_.size();
     for (std::size_t i = 0; i < n; ++i) {
-      const Motion& m = motions_[reversed ? n - 1 - i : i];
+      const ElementaryMotion& m = motions_[reversed ? n - 1 - i : i];
       step_motion_one(m, joint_v + m.v, joint_a + m.v, columns + m.v, motion);
     }
     motion.shift(far.position);
@@ -187,13 +189,13 @@ bool Joint::column_rates(const double* joint_q, const double* joint_v, bool reve
   if (is_product()) {
     const std::size_t n = motions_.size();
     for (std::size_t i = 0; i < n; ++i) {
-      const Motion& m = motions_[reversed ? n - 1 - i : i];
-      const bool turns_with_far_side = m.kind == MotionKind::free_rotation && !reversed;
+      const ElementaryMotion& m = motions_[reversed ? n - 1 - i : i];
+      const bool turns_with_far_side = m.kind == ElementaryMotionKind::free_rotation && !reversed;
       motion.shift(columns[m.v].point);
       const FrameMotion before = motion;
       step_motion_one(m, joint_v + m.v, rest.data(), columns + m.v, motion);
       const Vector3 turning = turns_with_far_side ? motion.angular_velocity : before.angular_velocity;
-      for (std::uint32_t k = m.v; k < m.v + (m.kind == MotionKind::free_rotation ? 3u : 1u); ++k) {
+      for (std::uint32_t k = m.v; k < m.v + (m.kind == ElementaryMotionKind::free_rotation ? 3u : 1u); ++k) {
         rates[k] = {turning.cross(columns[k].angular), turning.cross(columns[k].linear), before.velocity};
       }
     }

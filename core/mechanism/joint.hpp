@@ -47,11 +47,11 @@ struct FrameMotion {
   }
 };
 
-enum class MotionKind { rotation, translation, screw, free_rotation };
+enum class ElementaryMotionKind { rotation, translation, screw, free_rotation };
 
 /// An elementary motion with everything that evaluation needs. Axis and point are constant in the frame before it.
-struct Motion {
-  MotionKind kind = MotionKind::rotation;
+struct ElementaryMotion {
+  ElementaryMotionKind kind = ElementaryMotionKind::rotation;
   std::uint32_t q = 0;  ///< first coordinate and first rate, counted within the joint
   std::uint32_t v = 0;
   double zero = 0.0;  ///< the coordinate's value at which nothing has moved
@@ -84,7 +84,7 @@ class Joint {
   std::uint32_t q = 0, v = 0;  ///< first coordinate and rate in the state
 
   bool is_product() const { return type->is_product(); }
-  const std::vector<Motion>& motions() const { return motions_; }
+  const std::vector<ElementaryMotion>& motions() const { return motions_; }
   /// Names of what the plugin does not provide and core forms numerically; empty for products.
   std::vector<std::string> numerical_parts() const;
 
@@ -127,7 +127,7 @@ class Joint {
   void without_zero(const double* joint_q, double* shifted) const;
 
   Instance instance_;
-  std::vector<Motion> motions_;
+  std::vector<ElementaryMotion> motions_;
   double line_step_ = angle_difference_step;  ///< [m]
 };
 

@@ -6,7 +6,7 @@
 #include "mechanism/coordinates.hpp"
 #include "mechanism/difference.hpp"
 #include "mechanism/joint.hpp"
-#include "spatial/rotation.hpp"
+#include "spatial/rotation_vector.hpp"
 
 namespace koppel {
 namespace {
@@ -56,7 +56,7 @@ bool Joint::callback_subspace(const double* joint_q, Subspace& s) const {
       Pose there;
       if (!callback_pose(moved.data(), there)) return false;
       const Pose step = relative_pose(here, there);
-      out << rotation_vector<double>(step.rotation), step.position;
+      out << rotation_vector_of_rotation<double>(step.rotation), step.position;
       return true;
     };
     return differentiate_along_rates(*this, line_step_, twist_to, s);

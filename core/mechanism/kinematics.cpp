@@ -45,7 +45,7 @@ bool forward_motion(const Mechanism& mechanism, const double* q, const double* v
   return true;
 }
 
-RelativeMotion relative_motion(const Pose& a, const FrameMotion& motion_a, const Pose& b, const FrameMotion& motion_b) {
+RelativeTwist relative_twist(const Pose& a, const FrameMotion& motion_a, const Pose& b, const FrameMotion& motion_b) {
   const Vector3 d = b.position - a.position;
   const Vector3& wa = motion_a.angular_velocity;
   const Vector3& wb = motion_b.angular_velocity;
@@ -55,7 +55,7 @@ RelativeMotion relative_motion(const Pose& a, const FrameMotion& motion_a, const
                              wa.cross(apart) - wb.cross(slide);
   const Vector3 turn_rate = motion_b.angular_acceleration - motion_a.angular_acceleration + wb.cross(wa);
   const Matrix3 to_b = b.rotation.transpose();
-  RelativeMotion result;
+  RelativeTwist result;
   result.twist << to_b * (wb - wa), to_b * slide;
   result.rate << to_b * turn_rate, to_b * slide_rate;
   return result;

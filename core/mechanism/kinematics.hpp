@@ -43,11 +43,11 @@ inline FrameMotion motion_of(const Kinematics& kinematics, Node node, const Vect
 }
 
 /// How frame b moves relative to frame a, in the axes of b at its origin.
-struct RelativeMotion {
+struct RelativeTwist {
   Vector6 twist;  ///< [angular; linear]
   Vector6 rate;   ///< derivative of the twist's components
 };
-RelativeMotion relative_motion(const Pose& a, const FrameMotion& motion_a, const Pose& b, const FrameMotion& motion_b);
+RelativeTwist relative_twist(const Pose& a, const FrameMotion& motion_a, const Pose& b, const FrameMotion& motion_b);
 
 /// Geometric Jacobian of a frame (K-II-2.4.1): 6 x nv, [angular; linear] at its origin, world axes. After
 /// forward_position.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "spatial/rotation.hpp"
+#include "spatial/angle_sequence.hpp"
 
 namespace koppel {
 namespace {
@@ -24,7 +24,7 @@ double* coordinate(const Mechanism& mechanism, const State& state, const RecordD
 double* joint_cardan(const Mechanism& mechanism, const State& state, const RecordDescription& record, double* to) {
   const Joint& joint = mechanism.joints[record.joint.index()];
   const Vector4 q = state.q.segment<4>(joint.q + joint.blocks[record.block].q);
-  return append(cardan_angles<double>(rotation_of_quaternion<double>(q)), to);
+  return append(CardanAngles::of_quaternion<double>(q).coordinates, to);
 }
 
 double* frame(const RecordDescription& record, const Kinematics& kinematics, double* to) {
@@ -32,7 +32,7 @@ double* frame(const RecordDescription& record, const Kinematics& kinematics, dou
   const FrameMotion motion = motion_of(kinematics, record.frame.body.value, record.frame.pose.position);
   switch (record.quantity) {
     case Quantity::quaternion: return append(quaternion_of_rotation<double>(pose.rotation), to);
-    case Quantity::cardan: return append(cardan_angles<double>(pose.rotation), to);
+    case Quantity::cardan: return append(extracted<CardanAngles, double>(pose.rotation).coordinates, to);
     case Quantity::velocity: return append(motion.velocity, to);
     case Quantity::angular_velocity: return append(motion.angular_velocity, to);
     case Quantity::linear_acceleration: return append(motion.acceleration, to);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "spatial/quaternion.hpp"
 #include "spatial/rotation.hpp"
 
 namespace koppel {

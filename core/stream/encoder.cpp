@@ -10,7 +10,7 @@
 #include "koppel/model_t.hpp"
 #include "koppel/poses_t.hpp"
 #include "koppel/state_t.hpp"
-#include "spatial/rotation.hpp"
+#include "spatial/quaternion.hpp"
 
 namespace koppel {
 namespace {

@@ -10,6 +10,7 @@
 #include "../plugin/curve.hpp"
 #include "../spatial/directions.hpp"
 #include "built.hpp"
+#include "spatial/rotation_vector.hpp"
 
 namespace koppel::test {
 namespace {

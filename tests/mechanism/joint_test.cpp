@@ -8,6 +8,7 @@
 #include "../plugin/curve.hpp"
 #include "../spatial/directions.hpp"
 #include "built.hpp"
+#include "spatial/rotation_vector.hpp"
 
 namespace koppel::test {
 namespace {
@@ -60,7 +61,7 @@ TEST_P(EveryJoint, SubspaceIsTheRateOfThePose) {
     const Vector6 expected = Vector6::NullaryExpr([&](Eigen::Index i) {
       return derivative([&](double t) {
         const Pose step = relative_pose(here, pose_at(moved(q, v, t)));
-        return i < 3 ? rotation_vector<double>(step.rotation)[i] : step.position[i - 3];
+        return i < 3 ? rotation_vector_of_rotation<double>(step.rotation)[i] : step.position[i - 3];
       });
     });
     EXPECT_LE((twist - expected).cwiseAbs().maxCoeff(), 4 * accuracy);

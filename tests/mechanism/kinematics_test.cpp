@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "../plugin/curve.hpp"
+#include "spatial/rotation_vector.hpp"
 #include "tree.hpp"
 
 namespace koppel::test {
@@ -47,7 +48,7 @@ class Tree : public testing::TestWithParam<int> {
     const Matrix3 now = relative_pose(here.poses[a_node], here.poses[b_node]).rotation;
     return Vector3::NullaryExpr([&](Eigen::Index i) {
       return difference([&](double t) {
-        return rotation_vector<double>(now.transpose() * relative_at(t, a_node, b_node).rotation)[i];
+        return rotation_vector_of_rotation<double>(now.transpose() * relative_at(t, a_node, b_node).rotation)[i];
       });
     });
   }
@@ -83,7 +84,7 @@ TEST_P(Tree, AccelerationsAreTheRatesOfVelocities) {
 
 TEST_P(Tree, RelativeMotionIsThatOfTheRelativePose) {
   const Node b = mechanism.nodes - 1, other = mechanism.nodes / 2;
-  const RelativeMotion motion = relative_motion(here.poses[other], here.motions[other], here.poses[b], here.motions[b]);
+  const RelativeTwist motion = relative_twist(here.poses[other], here.motions[other], here.poses[b], here.motions[b]);
   const Matrix3 to_b = relative_pose(here.poses[other], here.poses[b]).rotation.transpose();
   const Vector3 turn = turning(first, other, b), slide = to_b * sliding(first, other, b);
   EXPECT_LE((motion.twist.head<3>() - turn).norm(), first_accuracy);

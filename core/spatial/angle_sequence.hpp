@@ -79,6 +79,27 @@ struct AngleSequence {
             singular};
   }
 
+  /// The same of a matrix: by its entries, of which the small ones are exact where the quaternion's are not, near
+  /// gimbal lock (K-I-4.3.1, K-I-4.4.1).
+  template <typename T>
+  static Extracted<T, 3> of_rotation(const Matrix3T<T>& r) {
+    using std::atan2, std::cos, std::hypot, std::sin;
+    const T p(parity);
+    const T lever = is_euler ? hypot(r(i, j), r(i, other)) : hypot(r(i, i), r(i, j));
+    const T middle = is_euler ? atan2(lever, r(i, i)) : atan2(T(p * r(i, other)), lever);
+    const bool singular = lever <= rounding_floor<T>();
+    if (lever <= rounding_floor<T>() / T(2)) {
+      return {{atan2(T(p * r(other, j)), r(j, j)), middle, T(0)}, true};
+    }
+    const T first = is_euler ? atan2(r(j, i), T(-p * r(other, i))) : atan2(T(-p * r(j, other)), r(other, other));
+    // The rest after the first turn: so the three together make the matrix, however uncertain the first may be.
+    const T c = cos(first), s = p * sin(first);
+    const T along = c * r(j, j) + s * r(other, j);
+    const T across =
+        is_euler ? T(-p * (c * r(j, other) + s * r(other, other))) : T(p * (c * r(j, i) + s * r(other, i)));
+    return {{first, middle, atan2(across, along)}, singular};
+  }
+
   /// The other angles of the same rotation, those of the other configuration of the chain of three revolute joints
   /// (K-I-4.3.1, K-I-4.4.1). Outer angles in (-pi, pi].
   template <typename T>

@@ -4,7 +4,7 @@
 
 #include "spatial/rotation.hpp"
 #include "spatial/rotation_coordinates.hpp"
-#include "spatial/sinc.hpp"
+#include "spatial/vector.hpp"
 
 namespace koppel {
 
@@ -27,22 +27,19 @@ struct AxisAngle {
   /// while the angle is nothing but rounding (K-I-4.2.2).
   template <typename T>
   static Extracted<T, 4> of_quaternion(const Vector4T<T>& q, const Vector3T<T>& previous = Vector3T<T>::UnitZ()) {
-    using std::atan2;
-    const bool turned = q[0] < T(0);
-    const Vector3T<T> v = turned ? Vector3T<T>(-q.template tail<3>()) : Vector3T<T>(q.template tail<3>());
-    const T w = turned ? T(-q[0]) : q[0];
-    Extracted<T, 4> result;
-    // By the greatest component: the axis of the smallest angle is still one of length one.
-    const T scale = v.cwiseAbs().maxCoeff();
-    if (scale > T(0)) {
-      const Vector3T<T> scaled = v / scale;
-      const T norm = scaled.norm();
-      result.coordinates << scaled / norm, T(2) * atan2(scale * norm, w);
-    } else {
-      result.coordinates << previous, T(0);
-    }
-    result.singular = scale <= rounding_floor<T>() * w;
-    return result;
+    using std::atan2, std::sqrt;
+    const T w = q[0] < T(0) ? T(-q[0]) : q[0];
+    const T sine = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    // Shorter vectors have lost digits by being squared.
+    if (sine < T(1e-140))
+      return of_tiny<T>(w, q[0] < T(0) ? Vector3T<T>(-q.template tail<3>()) : q.template tail<3>(), previous);
+    const T scale = q[0] < T(0) ? T(T(-1) / sine) : T(T(1) / sine);
+    return {{scale * q[1], scale * q[2], scale * q[3], T(2) * atan2(sine, w)}, sine <= rounding_floor<T>() * w};
+  }
+
+  template <typename T>
+  static Extracted<T, 4> of_rotation(const Matrix3T<T>& r) {
+    return of_quaternion<T>(long_quaternion_of_rotation<T>(r));
   }
 
   template <typename T>
@@ -79,6 +76,15 @@ struct AxisAngle {
     Eigen::Matrix<T, 4, 3> k;
     k << rotation_terms<T>(cotangent, -cotangent * u, u, T(axes == Axes::base ? -0.5 : 0.5) * u), u.transpose();
     return k;
+  }
+
+ private:
+  template <typename T>
+  static Extracted<T, 4> of_tiny(const T& w, const Vector3T<T>& v, const Vector3T<T>& previous) {
+    const auto p = polar<T>(v);
+    Extracted<T, 4> result{{previous.x(), previous.y(), previous.z(), T(0)}, true};
+    if (p) result.coordinates << p->direction, T(2) * p->length / w;
+    return result;
   }
 };
 

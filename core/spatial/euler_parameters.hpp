@@ -9,8 +9,9 @@ namespace koppel {
 struct EulerParameters {
   static constexpr int size = 4;
 
+  /// The argument itself, not a copy.
   template <typename T>
-  static Vector4T<T> quaternion(const Vector4T<T>& q) {
+  static const Vector4T<T>& quaternion(const Vector4T<T>& q) {
     return q;
   }
 

@@ -12,7 +12,10 @@ namespace koppel {
 template <typename T>
 PoseT<T> pose_exp(const Vector6T<T>& x) {
   const Vector3T<T> phi = x.template head<3>(), rho = x.template tail<3>();
-  return {rotation_of_rotation_vector<T>(phi), left_jacobian<T>(phi) * rho};
+  const SincTerms<T> terms = sinc_terms<T>(phi.squaredNorm());
+  // J_l rho without the matrix.
+  const Vector3T<T> way = terms.sinc * rho + (terms.sinc_defect * phi.dot(rho)) * phi + terms.cosinc * phi.cross(rho);
+  return {rotation_terms<T>(terms.cosine, terms.cosinc * phi, phi, terms.sinc * phi), way};
 }
 
 /// The shortest [phi; rho] with exp = X: |phi| in [0, pi], rho regular up to and at pi (M-3.2.2).

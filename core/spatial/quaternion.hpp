@@ -10,7 +10,7 @@ namespace koppel {
 
 /// Hamilton product (K-I-4.5.1). Of unit quaternions it is the composition: q_02 = q_01 q_12 (K-I-4.5.4).
 template <typename T>
-Vector4T<T> quaternion_product(const Vector4T<T>& a, const Vector4T<T>& b) {
+inline Vector4T<T> quaternion_product(const Vector4T<T>& a, const Vector4T<T>& b) {
   return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
           a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
 }
@@ -48,7 +48,7 @@ std::optional<Vector4T<T>> quaternion_inverse(const Vector4T<T>& q) {
 
 /// The vector v turned by the unit quaternion q: q v conj(q) (K-I-4.5.2).
 template <typename T>
-Vector3T<T> rotated(const Vector4T<T>& q, const Vector3T<T>& v) {
+inline Vector3T<T> rotated(const Vector4T<T>& q, const Vector3T<T>& v) {
   const Vector3T<T> n = q.template tail<3>();
   const Vector3T<T> t = T(2) * n.cross(v);
   return v + q[0] * t + n.cross(t);
@@ -56,7 +56,7 @@ Vector3T<T> rotated(const Vector4T<T>& q, const Vector3T<T>& v) {
 
 /// Matrix of a quaternion, which need not be of unit length: the result is that of the normalised one (K-I-4.5.2).
 template <typename T>
-Matrix3T<T> rotation_of_quaternion(const Vector4T<T>& q) {
+inline Matrix3T<T> rotation_of_quaternion(const Vector4T<T>& q) {
   const T s = T(2) / q.squaredNorm();
   const T x = q[1] * s, y = q[2] * s, z = q[3] * s;
   const T wx = q[0] * x, wy = q[0] * y, wz = q[0] * z;
@@ -69,7 +69,7 @@ Matrix3T<T> rotation_of_quaternion(const Vector4T<T>& q) {
 
 /// Which of the quaternion's components w x y z is greatest in size, by the matrix: 0 to 3. It is at least 1/2.
 template <typename T>
-int greatest_component(const Matrix3T<T>& r) {
+inline int greatest_component(const Matrix3T<T>& r) {
   // 4 w^2 = 1 + trace, 4 x_k^2 = 1 - trace + 2 r_kk.
   int greatest = 0;
   T most = r.trace();
@@ -82,25 +82,29 @@ int greatest_component(const Matrix3T<T>& r) {
   return greatest;
 }
 
-/// Unit quaternion of a rotation matrix, with w >= 0: the greatest component from the diagonal, the others by dividing
-/// by it, so that no case is singular (K-I-4.5.3). A matrix that is orthonormal only to some digits gives a quaternion
-/// that is right to as many.
+/// A quaternion of a rotation matrix, at least one and at most four units long, of either sign: four times its greatest
+/// component, from the diagonal, times each of the components, so that no case is singular (K-I-4.5.3). For all that
+/// does not depend on a quaternion's length.
 template <typename T>
-Vector4T<T> quaternion_of_rotation(const Matrix3T<T>& r) {
-  // Four times the greatest component times each: a row of 4 q q^T.
-  Vector4T<T> row;
-  const int greatest = greatest_component<T>(r);
-  if (greatest == 0) {
-    row << T(1) + r.trace(), r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1);
-  } else {
-    const int i = greatest - 1, j = (i + 1) % 3, k = (i + 2) % 3;
-    row[0] = r(k, j) - r(j, k);
-    row[1 + i] = T(1) + r(i, i) - r(j, j) - r(k, k);
-    row[1 + j] = r(i, j) + r(j, i);
-    row[1 + k] = r(i, k) + r(k, i);
+inline Vector4T<T> long_quaternion_of_rotation(const Matrix3T<T>& r) {
+  switch (greatest_component<T>(r)) {
+    case 0: return {T(1) + r.trace(), r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)};
+    case 1: return {r(2, 1) - r(1, 2), T(1) + r(0, 0) - r(1, 1) - r(2, 2), r(0, 1) + r(1, 0), r(0, 2) + r(2, 0)};
+    case 2: return {r(0, 2) - r(2, 0), r(0, 1) + r(1, 0), T(1) + r(1, 1) - r(2, 2) - r(0, 0), r(1, 2) + r(2, 1)};
+    default: return {r(1, 0) - r(0, 1), r(0, 2) + r(2, 0), r(1, 2) + r(2, 1), T(1) + r(2, 2) - r(0, 0) - r(1, 1)};
   }
-  const T norm = row.norm();
-  return row / (row[0] < T(0) ? T(-norm) : norm);
+}
+
+/// Unit quaternion of a rotation matrix, with w >= 0 (K-I-4.5.3). A matrix that is orthonormal only to some digits
+/// gives a quaternion that is right to as many.
+template <typename T>
+inline Vector4T<T> quaternion_of_rotation(const Matrix3T<T>& r) {
+  using std::sqrt;
+  const Vector4T<T> q = long_quaternion_of_rotation<T>(r);
+  // Number by number: what was just stored by ones is slow to load by twos.
+  const T norm = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const T factor = T(1) / (q[0] < T(0) ? T(-norm) : norm);
+  return {factor * q[0], factor * q[1], factor * q[2], factor * q[3]};
 }
 
 /// q or -q, which are the same rotation: the one nearer to the previous quaternion, so that a motion has no jump

@@ -12,7 +12,7 @@ namespace koppel {
 
 /// diagonal I + a b^T + skew(c), with a parallel to b: the shape of a rotation and of its derivatives.
 template <typename T>
-Matrix3T<T> rotation_terms(const T& diagonal, const Vector3T<T>& a, const Vector3T<T>& b, const Vector3T<T>& c) {
+inline Matrix3T<T> rotation_terms(const T& diagonal, const Vector3T<T>& a, const Vector3T<T>& b, const Vector3T<T>& c) {
   const T xy = a.x() * b.y(), xz = a.x() * b.z(), yz = a.y() * b.z();
   Matrix3T<T> r;
   r << diagonal + a.x() * b.x(), xy - c.z(), xz + c.y(),  //
@@ -28,12 +28,12 @@ Matrix3T<T> rotation_terms(const T& diagonal, const Vector3T<T>& a, const Vector
 /// the turns before it have made, they stand in order: R_02 = R_01 R_12 (K-I-4.2.3b). Each about an axis that stays in
 /// the base, the last stands leftmost; an axis that is carried along is turned first, u_2 = R_1 u_20 (K-I-4.2.3c).
 template <typename T>
-Matrix3T<T> rotation_about(const Vector3T<T>& u, const T& cosine, const T& sine) {
+inline Matrix3T<T> rotation_about(const Vector3T<T>& u, const T& cosine, const T& sine) {
   return rotation_terms<T>(cosine, (T(1) - cosine) * u, u, sine * u);
 }
 
 template <typename T>
-Matrix3T<T> rotation_about(const Vector3T<T>& u, const T& angle) {
+inline Matrix3T<T> rotation_about(const Vector3T<T>& u, const T& angle) {
   using std::cos, std::sin;
   return rotation_about<T>(u, cos(angle), sin(angle));
 }

@@ -9,6 +9,7 @@
 //   it does
 //                             not exist
 //   rotation(x)               matrix R_base,body; optional, where there is a shorter way than by the quaternion
+//   of_rotation(r)            coordinates of a matrix, likewise
 //   twin(x)                   optional: the other coordinates of the same rotation
 //   constraints(x)            optional, if m > 3: the conditions that they satisfy, zero if they do
 //
@@ -87,13 +88,21 @@ Matrix3T<T> rotation(const Eigen::Matrix<T, C::size, 1>& x) {
 /// Coordinates of a rotation matrix (K-I-4.0a).
 template <RotationCoordinates C, typename T>
 Extracted<T, C::size> extracted(const Matrix3T<T>& r) {
-  return C::template of_quaternion<T>(quaternion_of_rotation<T>(r));
+  if constexpr (requires { C::template of_rotation<T>(r); }) {
+    return C::template of_rotation<T>(r);
+  } else {
+    return C::template of_quaternion<T>(quaternion_of_rotation<T>(r));
+  }
 }
 
 /// Coordinates of one kind made of those of another (K-I-4.7).
 template <RotationCoordinates To, RotationCoordinates From, typename T>
 Extracted<T, To::size> converted(const Eigen::Matrix<T, From::size, 1>& x) {
-  return To::template of_quaternion<T>(From::template quaternion<T>(x));
+  if constexpr (From::size == 9) {
+    return extracted<To, T>(rotation<From, T>(x));
+  } else {
+    return To::template of_quaternion<T>(From::template quaternion<T>(x));
+  }
 }
 
 /// The angular velocity [rad/s] that goes with rates of the coordinates (K-I-4.0a).

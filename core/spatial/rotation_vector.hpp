@@ -14,46 +14,44 @@ namespace koppel {
 
 /// Unit quaternion of a rotation vector [rad] of any length (K-I-4.5.2).
 template <typename T>
-Vector4T<T> quaternion_of_rotation_vector(const Vector3T<T>& phi) {
-  const T quarter = phi.squaredNorm() / T(4);
-  Vector4T<T> q;
-  q << cosine_of_square<T>(quarter), sinc_of_square<T>(quarter) / T(2) * phi;
-  return q;
+inline Vector4T<T> quaternion_of_rotation_vector(const Vector3T<T>& phi) {
+  const SincTerms<T> half = sinc_terms<T>(phi.squaredNorm() / T(4));
+  const T factor = half.sinc / T(2);
+  return {half.cosine, factor * phi.x(), factor * phi.y(), factor * phi.z()};
 }
 
 /// The exponential: rotation matrix exp(skew(phi)) of a rotation vector [rad] of any length (K-I-4.2.1b).
 template <typename T>
-Matrix3T<T> rotation_of_rotation_vector(const Vector3T<T>& phi) {
-  const T s = phi.squaredNorm();
-  const Vector3T<T> across = cosinc_of_square<T>(s) * phi;
-  return rotation_terms<T>(cosine_of_square<T>(s), across, phi, sinc_of_square<T>(s) * phi);
+inline Matrix3T<T> rotation_of_rotation_vector(const Vector3T<T>& phi) {
+  const SincTerms<T> terms = sinc_terms<T>(phi.squaredNorm());
+  return rotation_terms<T>(terms.cosine, terms.cosinc * phi, phi, terms.sinc * phi);
 }
 
 /// The logarithm: rotation vector [rad] of a quaternion (not zero), length in [0, pi]; to rounding at every angle
 /// (K-I-4.2.2). At half a turn both signs are right, and one is returned.
 template <typename T>
-Vector3T<T> rotation_vector_of_quaternion(const Vector4T<T>& q) {
-  using std::atan2;
+inline Vector3T<T> rotation_vector_of_quaternion(const Vector4T<T>& q) {
+  using std::atan2, std::sqrt;
   const T w = q[0] < T(0) ? T(-q[0]) : q[0];
-  const Vector3T<T> v = q[0] < T(0) ? Vector3T<T>(-q.template tail<3>()) : Vector3T<T>(q.template tail<3>());
-  const T sine = v.norm();
+  const T sine = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   // Too small to be squared, or zero: the angle is its sine.
-  if (!(sine > T(0))) return T(2) / w * v;
-  return T(2) * atan2(sine, w) / sine * v;
+  const T size = sine > T(0) ? T(T(2) * atan2(sine, w) / sine) : T(T(2) / w);
+  const T factor = q[0] < T(0) ? T(-size) : size;
+  return {factor * q[1], factor * q[2], factor * q[3]};
 }
 
 /// The logarithm of a rotation matrix [rad], length in [0, pi] (K-I-4.2.2, K-I-3.2.0).
 template <typename T>
-Vector3T<T> rotation_vector_of_rotation(const Matrix3T<T>& r) {
-  return rotation_vector_of_quaternion<T>(quaternion_of_rotation<T>(r));
+inline Vector3T<T> rotation_vector_of_rotation(const Matrix3T<T>& r) {
+  return rotation_vector_of_quaternion<T>(long_quaternion_of_rotation<T>(r));
 }
 
 /// J_l: angular velocity = J_l(phi) d(phi)/dt in the axes from which phi turns; exp(phi + d) = exp(J_l d) exp(phi) to
 /// first order (K-I-4.2.4). Regular everywhere; of rank one at full turns.
 template <typename T>
-Matrix3T<T> left_jacobian(const Vector3T<T>& phi) {
-  const T s = phi.squaredNorm();
-  return rotation_terms<T>(sinc_of_square<T>(s), sinc_defect_of_square<T>(s) * phi, phi, cosinc_of_square<T>(s) * phi);
+inline Matrix3T<T> left_jacobian(const Vector3T<T>& phi) {
+  const SincTerms<T> terms = sinc_terms<T>(phi.squaredNorm());
+  return rotation_terms<T>(terms.sinc, terms.sinc_defect * phi, phi, terms.cosinc * phi);
 }
 
 /// J_r: the same in the turned axes, exp(phi + d) = exp(phi) exp(J_r d); the transpose of J_l (K-I-4.2.4).
@@ -65,7 +63,7 @@ Matrix3T<T> right_jacobian(const Vector3T<T>& phi) {
 /// J_l^-1: d(phi)/dt = J_l^-1 omega, omega in the axes from which phi turns (K-I-4.2.4). Grows without bound towards
 /// full turns, 2 pi and its multiples; no logarithm is longer than pi, where its norm is pi/2.
 template <typename T>
-Matrix3T<T> left_jacobian_inverse(const Vector3T<T>& phi) {
+inline Matrix3T<T> left_jacobian_inverse(const Vector3T<T>& phi) {
   const T s = phi.squaredNorm();
   const T factor = cotangent_defect_of_square<T>(s);
   return rotation_terms<T>(T(1) - factor * s, factor * phi, phi, T(-0.5) * phi);
@@ -114,7 +112,7 @@ struct RotationVector {
   template <typename T>
   static std::optional<Matrix3T<T>> k_matrix(const Vector3T<T>& phi, Axes axes) {
     using std::abs;
-    if (abs(sinc_of_square<T>(phi.squaredNorm() / T(4))) <= rounding_floor<T>()) return std::nullopt;
+    if (abs(sinc_terms<T>(phi.squaredNorm() / T(4)).sinc) <= rounding_floor<T>()) return std::nullopt;
     return axes == Axes::base ? left_jacobian_inverse<T>(phi) : right_jacobian_inverse<T>(phi);
   }
 };

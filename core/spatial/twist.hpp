@@ -82,10 +82,12 @@ T power(const WrenchT<T, Frame>& wrench, const TwistT<T, Frame>& twist) {
 /// on wrenches.
 template <typename T>
 Matrix6T<T> adjoint(const PoseT<T>& x_ab) {
-  Matrix6T<T> m = Matrix6T<T>::Zero();
-  m.template topLeftCorner<3, 3>() = x_ab.rotation;
-  m.template bottomRightCorner<3, 3>() = x_ab.rotation;
-  m.template bottomLeftCorner<3, 3>() = skew(x_ab.position) * x_ab.rotation;
+  Matrix6T<T> m;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3T<T> axis = x_ab.rotation.col(k);
+    m.col(k) << axis, x_ab.position.cross(axis);
+    m.col(3 + k) << Vector3T<T>::Zero(), axis;
+  }
   return m;
 }
 

@@ -6,6 +6,10 @@
 
 namespace koppel {
 
+// In this room small functions in inner loops are declared inline although templates need it not: GCC then inlines
+// larger ones, and results of three or four numbers stay in registers. On their way through memory they cost more than
+// they do.
+
 template <typename T>
 using Vector3T = Eigen::Matrix<T, 3, 1>;
 template <typename T>

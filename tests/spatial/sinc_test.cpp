@@ -45,10 +45,11 @@ TEST(Sinc, AndItsKinAreTheirSeries) {
     const Long exact = static_cast<Long>(x) * static_cast<Long>(x);
     // The square is rounded: x has half a unit of error, which moves the cosine by x eps / 2.
     const double moved = eps * (2 + x);
-    expect_near(cosine_of_square<double>(s), series_sum(exact, 0, false), moved, x);
-    expect_near(sinc_of_square<double>(s), series_sum(exact, 1, false), moved, x);
-    expect_near(cosinc_of_square<double>(s), series_sum(exact, 2, false), moved, x);
-    expect_near(sinc_defect_of_square<double>(s), series_sum(exact, 3, false), moved, x);
+    const SincTerms<double> terms = sinc_terms<double>(s);
+    expect_near(terms.cosine, series_sum(exact, 0, false), moved, x);
+    expect_near(terms.sinc, series_sum(exact, 1, false), moved, x);
+    expect_near(terms.cosinc, series_sum(exact, 2, false), moved, x);
+    expect_near(terms.sinc_defect, series_sum(exact, 3, false), moved, x);
     // (sin h - h cos h) / h^3 over 4 sin h / h; near a full turn it is as large as the sine is small.
     const Long quarter = exact / 4;
     const Long sinc = series_sum(quarter, 1, false);
@@ -65,16 +66,16 @@ TEST(Sinc, HasItsDerivativeAtZeroAndAcrossTheSeams) {
     const Long exact = static_cast<Long>(x) * static_cast<Long>(x);
     const Long sinc = series_sum(exact, 1, false), cosinc = series_sum(exact, 2, false);
     // Where the closed form serves, s >= 1, it divides by s what cancels at most to a part of ten.
-    expect_near(cosine_of_square(s).v[0], -sinc / 2, 8 * eps, x);
+    expect_near(sinc_terms(s).cosine.v[0], -sinc / 2, 8 * eps, x);
     if (exact > 0.01L) {
-      expect_near(sinc_of_square(s).v[0], (series_sum(exact, 0, false) - sinc) / (2 * exact), 16 * eps, x);
-      expect_near(cosinc_of_square(s).v[0], (sinc - 2 * cosinc) / (2 * exact), 16 * eps, x);
+      expect_near(sinc_terms(s).sinc.v[0], (series_sum(exact, 0, false) - sinc) / (2 * exact), 16 * eps, x);
+      expect_near(sinc_terms(s).cosinc.v[0], (sinc - 2 * cosinc) / (2 * exact), 16 * eps, x);
     } else {
-      expect_near(sinc_of_square(s).v[0], -1.0L / 6 + exact / 60 - exact * exact / 1680, 8 * eps + 1e-10 * x, x);
-      expect_near(cosinc_of_square(s).v[0], -1.0L / 24 + exact / 360 - exact * exact / 13440, 8 * eps + 1e-10 * x, x);
+      expect_near(sinc_terms(s).sinc.v[0], -1.0L / 6 + exact / 60 - exact * exact / 1680, 8 * eps + 1e-10 * x, x);
+      expect_near(sinc_terms(s).cosinc.v[0], -1.0L / 24 + exact / 360 - exact * exact / 13440, 8 * eps + 1e-10 * x, x);
     }
   }
-  EXPECT_EQ(sinc_of_square(Jet(0.0, 0)).v[0], -1.0 / 6);
+  EXPECT_EQ(sinc_terms(Jet(0.0, 0)).sinc.v[0], -1.0 / 6);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -5,6 +6,8 @@
 #include "boundary.hpp"
 #include "closure/analysis.hpp"
 #include "closure/close.hpp"
+#include "closure/explain.hpp"
+#include "closure/freedoms.hpp"
 
 namespace {
 
@@ -92,6 +95,16 @@ koppel_status misfit(koppel_error* error) {
   return koppel::invalid_argument("state or work is NULL, or they belong to different mechanisms", error);
 }
 
+koppel_status freedoms_of(const koppel_state* state, koppel_work* work, koppel::Freedoms& freedoms,
+                          koppel_error* error) {
+  if (!koppel::fit(state, work)) return misfit(error);
+  const auto explained = [&](koppel_status status) {
+    return explain_failure(status, work->work, state->state.time, nullptr, error);
+  };
+  if (state->state.stage == koppel::Stage::assigned) return explained(KOPPEL_INVALID_ARGUMENT);
+  return koppel::find_freedoms(work->work, state->state, freedoms) ? KOPPEL_OK : explained(KOPPEL_PLUGIN);
+}
+
 }  // namespace
 
 static_assert(static_cast<int>(koppel::Verdict::open) == KOPPEL_VERDICT_OPEN);
@@ -177,5 +190,42 @@ koppel_status koppel_analyse(const koppel_state* state, koppel_work* work, koppe
     out.gap = result.gap;
     koppel::write_struct(out, analysis);
     return KOPPEL_OK;
+  });
+}
+
+koppel_status koppel_find_freedoms(const koppel_state* state, koppel_work* work, koppel_freedoms* freedoms,
+                                   koppel_error* error) {
+  return koppel::guarded(error, [&]() -> koppel_status {
+    if (freedoms == nullptr) return koppel::invalid_argument("freedoms is NULL", error);
+    koppel::Freedoms found;
+    const koppel_status status = freedoms_of(state, work, found, error);
+    if (status < 0) return status;
+    const auto of_kind = [&](koppel::LoopKind kind) {
+      return static_cast<std::uint32_t>(std::count_if(found.loops.begin(), found.loops.end(),
+                                                      [kind](const auto& loop) { return loop.kind == kind; }));
+    };
+    koppel_freedoms out{};
+    out.mobility_by_kind = found.mobility_by_kind;
+    out.mobility_here = found.mobility_here;
+    out.mobility_nearby = found.mobility_nearby;
+    out.redundant_here = found.redundant_here;
+    out.redundant_nearby = found.redundant_nearby;
+    out.planar_loops = of_kind(koppel::LoopKind::planar);
+    out.spherical_loops = of_kind(koppel::LoopKind::spherical);
+    out.isolated = static_cast<std::uint32_t>(found.isolated.size());
+    out.indeterminate = static_cast<std::uint32_t>(found.indeterminate.size());
+    out.shaky = found.shaky ? 1 : 0;
+    koppel::write_struct(out, freedoms);
+    return KOPPEL_OK;
+  });
+}
+
+koppel_status koppel_explain_freedoms(const koppel_state* state, koppel_work* work, char* text, size_t size,
+                                      size_t* needed) {
+  return koppel::guarded(nullptr, [&]() -> koppel_status {
+    koppel::Freedoms found;
+    const koppel_status status = freedoms_of(state, work, found, nullptr);
+    if (status < 0) return status;
+    return koppel::write_text(koppel::explain(*state->mechanism, found), text, size, needed);
   });
 }

@@ -17,6 +17,8 @@ AtStart at_start(const Model& model) {
   auto analysis = sized<koppel_analysis>();
   const koppel_status analysed = koppel_analyse(state, work, &analysis, status >= 0 ? &result.error : nullptr);
   if (analysed >= 0) result.analysis = analysis;
+  auto freedoms = sized<koppel_freedoms>();
+  if (result.closed && koppel_find_freedoms(state, work, &freedoms, nullptr) >= 0) result.freedoms = freedoms;
   if (status >= 0 && analysed < 0) status = analysed;
   return result;
 }

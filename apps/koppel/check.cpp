@@ -27,12 +27,24 @@ std::optional<koppel_error> too_many_inputs(const Model& model, const AtStart& s
   return finding;
 }
 
-void print_mobility(const koppel_analysis& analysis) {
+void print_mobility(const koppel_analysis& analysis, const std::optional<koppel_freedoms>& freedoms) {
   std::printf("mobility    %d by rank, %d by count", analysis.mobility_rank, analysis.mobility_count);
+  if (freedoms && freedoms->planar_loops + freedoms->spherical_loops > 0) {
+    std::printf(", %d with planar and spherical loops counted as such", freedoms->mobility_by_kind);
+  }
   if (analysis.rank < analysis.equations) {
     std::printf("; %u of %u equations follow from the others", analysis.equations - analysis.rank, analysis.equations);
   }
   std::puts("");
+  if (!freedoms) return;
+  if (freedoms->isolated > 0) {
+    std::printf("isolated    %u of the freedoms: one body moves alone\n", freedoms->isolated);
+  }
+  if (freedoms->shaky != 0) {
+    std::puts("remark      shaky: gives way here, but has no other closed position near by");
+  } else if (freedoms->mobility_nearby < freedoms->mobility_here) {
+    std::printf("remark      a singular position: near by it has %d freedoms\n", freedoms->mobility_nearby);
+  }
 }
 
 void print_text(const Model& model, const AtStart& start) {
@@ -42,7 +54,7 @@ void print_text(const Model& model, const AtStart& start) {
   std::printf("elements    %u bodies with the ground, %u joints, %u constraints, %u inputs, %u recorded columns\n",
               sizes.bodies, sizes.joints, sizes.constraints, sizes.inputs, sizes.records);
   std::printf("loops       %u, with %u equations for %u unknown rates\n", sizes.loops, sizes.equations, sizes.unknowns);
-  if (start.analysis) print_mobility(*start.analysis);
+  if (start.analysis) print_mobility(*start.analysis, start.freedoms);
   if (start.closed) {
     std::printf("at t = 0    closed: residual %.1e, coordinates within %.1e, %u iterations, condition %.3g\n",
                 start.report.residual, start.report.coordinate_error, start.report.iterations, start.report.condition);
@@ -71,6 +83,14 @@ void add_start(nlohmann::ordered_json& document, const Model& model, const AtSta
   document["inputs"] = sizes.inputs;
   document["unknowns"] = sizes.unknowns;
   add_counts(document, sizes, start.analysis);
+  document["freedoms"] = nullptr;
+  if (start.freedoms) {
+    const koppel_freedoms& freedoms = *start.freedoms;
+    document["freedoms"] = {{"by_kind", freedoms.mobility_by_kind},  {"nearby", freedoms.mobility_nearby},
+                            {"planar_loops", freedoms.planar_loops}, {"spherical_loops", freedoms.spherical_loops},
+                            {"isolated", freedoms.isolated},         {"indeterminate", freedoms.indeterminate},
+                            {"shaky", freedoms.shaky != 0}};
+  }
   if (start.closed) {
     document["residual"] = start.report.residual;
     document["coordinate_error"] = start.report.coordinate_error;

@@ -177,6 +177,18 @@ void Equations::evaluate_jacobian() {
   }
 }
 
+Wrench Equations::reaction(std::size_t index, const Eigen::VectorXd& multipliers) const {
+  const Relation& relation = mechanism.relations[index];
+  const Local& local = locals_[index];
+  Vector6 at_b = Vector6::Zero();
+  for (std::uint32_t k = 0; k < relation.rows; ++k) {
+    const std::uint32_t row = relation.first_row + k;
+    const Eigen::Map<const Vector6> by_twist(local.by_twist.data() + std::size_t{6} * k);
+    at_b += multipliers[row] * mechanism.row_scale[row] * by_twist;
+  }
+  return transformed(local.b, Wrench{at_b.head<3>(), at_b.tail<3>()});
+}
+
 bool Equations::cut_coordinates(Eigen::VectorXd& q) {
   for (std::uint32_t i = 0; i < mechanism.loops; ++i) {
     const Relation& loop = mechanism.relations[i];

@@ -11,6 +11,7 @@
 
 #include "mechanism/kinematics.hpp"
 #include "mechanism/mechanism.hpp"
+#include "spatial/twist.hpp"
 
 namespace koppel {
 
@@ -29,6 +30,11 @@ class Equations {
   bool evaluate(const Eigen::VectorXd& q, double time);
   /// The Jacobian at the position last evaluated.
   void evaluate_jacobian();
+  /// Frame a of a relation in the world, at the position last evaluated.
+  const Pose& frame_a(std::size_t relation) const { return locals_[relation].a; }
+  /// The wrench on frame b, about the world's origin and in its axes, by multipliers of a relation's scaled rows (all
+  /// rows are given).
+  Wrench reaction(std::size_t relation, const Eigen::VectorXd& multipliers) const;
   /// The greatest scaled residual.
   double error() const { return residual.size() == 0 ? 0.0 : residual.lpNorm<Eigen::Infinity>(); }
 

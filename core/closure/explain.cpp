@@ -1,5 +1,7 @@
 #include "closure/explain.hpp"
 
+#include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "mechanism/names.hpp"
@@ -56,6 +58,66 @@ void explain_relation(const Mechanism& mechanism, const Relation& relation, std:
   out << "    depends on " << (names.empty() ? std::string("nothing") : joined(names)) << '\n';
 }
 
+/// A vector with as many digits as a person reads; what is rounding is zero.
+std::string text_of(const Vector3& v) {
+  std::ostringstream out;
+  out << std::setprecision(6) << '(';
+  for (int i = 0; i < 3; ++i) out << (i == 0 ? "" : ", ") << (std::abs(v[i]) < 1e-12 ? 0.0 : v[i]);
+  out << ')';
+  return out.str();
+}
+
+std::string text_of(const ScrewAxis& axis) {
+  const std::string line = "the line through " + text_of(axis.point()) + " along " + text_of(axis.line.direction);
+  std::ostringstream out;
+  out << std::setprecision(6);
+  switch (axis.kind) {
+    case MotionKind::rest: return "rests";
+    case MotionKind::translation: return "moves along " + text_of(axis.line.direction);
+    case MotionKind::rotation: return "turns about " + line;
+    case MotionKind::screw: out << "turns about " << line << " and slides along it by " << axis.pitch << " m/rad";
+  }
+  return out.str();
+}
+
+/// "moment about x y, force along z"
+std::string text_of(const IndeterminateReaction& reaction) {
+  const auto axes = [](const std::array<bool, 3>& which, const std::string& word) {
+    std::string text;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (which[i]) text += std::string(" ") + "xyz"[i];
+    }
+    return text.empty() ? text : word + text;
+  };
+  const std::string moment = axes(reaction.moment, "moment about"), force = axes(reaction.force, "force along");
+  return moment + (moment.empty() || force.empty() ? "" : ", ") + force;
+}
+
+void explain_loop(const LoopFreedoms& loop, std::ostream& out) {
+  switch (loop.kind) {
+    case LoopKind::spatial: out << "spatial, six equations\n"; return;
+    case LoopKind::planar: out << "planar across " << text_of(loop.normal) << ", three equations\n"; return;
+    case LoopKind::spherical: out << "spherical about " << text_of(loop.centre) << ", three equations\n"; return;
+  }
+}
+
+void explain_redundancy(const Mechanism& mechanism, const Freedoms& freedoms, std::ostream& out) {
+  if (freedoms.redundant_here > 0) {
+    out << freedoms.redundant_here << " of " << mechanism.rows << " equations follow from the others here, "
+        << freedoms.redundant_nearby << " at closed positions near by\n";
+  }
+  if (freedoms.shaky) {
+    out << "Shaky: gives way to a small force, but has no other closed position near by\n";
+  } else if (freedoms.mobility_nearby < freedoms.mobility_here) {
+    out << "Singular position: motions are possible here that are not near by\n";
+  }
+  if (freedoms.mobility_nearby > freedoms.mobility_by_kind) {
+    out << "Overconstrained: "
+        << plural(static_cast<std::size_t>(freedoms.mobility_nearby - freedoms.mobility_by_kind), "freedom", "freedoms")
+        << " more than the count, owed to its exact measures alone\n";
+  }
+}
+
 }  // namespace
 
 std::string explain(const Mechanism& mechanism) {
@@ -88,6 +150,36 @@ std::string explain(const Mechanism& mechanism) {
   if (mechanism.relations.empty()) out << ", closure (an open chain)";
   if (mechanism.constraints.empty()) out << ", constraints";
   out << '\n';
+  return out.str();
+}
+
+std::string explain(const Mechanism& mechanism, const Freedoms& freedoms) {
+  std::ostringstream out;
+  out << "Freedoms: " << freedoms.mobility_here << " by rank here, " << freedoms.mobility_by_kind
+      << " by count with the kinds of the loops, " << mechanism.mobility_count << " by the spatial count\n";
+  for (std::size_t i = 0; i < freedoms.loops.size(); ++i) {
+    out << "  " << relation_name(mechanism, mechanism.relations[i]) << ": ";
+    explain_loop(freedoms.loops[i], out);
+  }
+  explain_redundancy(mechanism, freedoms, out);
+  for (const IsolatedFreedom& freedom : freedoms.isolated) {
+    out << "Isolated freedom: " << mechanism.bodies[freedom.body.index()].name << ' ' << text_of(freedom.axis)
+        << " while all others rest; a joint with one freedom less at one end, such as a universal joint for a ball, "
+           "holds it\n";
+  }
+  if (!freedoms.indeterminate.empty()) {
+    out << "Reactions that statics alone does not determine, along the axes of the joint's inlet frame\n";
+  }
+  for (const IndeterminateReaction& reaction : freedoms.indeterminate) {
+    out << "  " << mechanism.joints[reaction.joint.index()].name << ": " << text_of(reaction) << '\n';
+  }
+  bool any = false;
+  for (std::size_t body = 1; body < freedoms.axes.size(); ++body) {
+    if (freedoms.axes[body].kind == MotionKind::rest) continue;
+    if (!any) out << "Screw axes of the velocities, in the world\n";
+    any = true;
+    out << "  " << mechanism.bodies[body].name << ' ' << text_of(freedoms.axes[body]) << '\n';
+  }
   return out.str();
 }
 

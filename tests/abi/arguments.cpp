@@ -110,6 +110,12 @@ TEST_F(Arguments, HandlesOfAnotherMechanismAreRefused) {
   EXPECT_EQ(koppel_accelerations(state, other_work.get(), nullptr), refused);
   EXPECT_EQ(koppel_move(state, other_work.get(), 0.1, nullptr, nullptr), refused);
   EXPECT_EQ(koppel_analyse(state, other_work.get(), &analysis, nullptr), refused);
+  auto freedoms = sized<koppel_freedoms>();
+  char text[16];
+  EXPECT_EQ(koppel_find_freedoms(state, other_work.get(), &freedoms, nullptr), refused);
+  EXPECT_EQ(koppel_explain_freedoms(state, other_work.get(), text, sizeof text, nullptr), refused);
+  // Another: a state that was never closed has no position whose freedoms could be told.
+  EXPECT_EQ(koppel_find_freedoms(other_state.get(), other_work.get(), &freedoms, nullptr), refused);
   EXPECT_EQ(koppel_poses(state, other_work.get(), KOPPEL_KIND_BODY, out.data(), 12 * bodies), refused);
   EXPECT_EQ(koppel_twists(state, other_work.get(), KOPPEL_KIND_BODY, out.data(), 6 * bodies), refused);
   EXPECT_EQ(koppel_frame_accelerations(state, other_work.get(), KOPPEL_KIND_BODY, out.data(), 6 * bodies), refused);

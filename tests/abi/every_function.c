@@ -122,6 +122,13 @@ static void closes_by_every_method(const koppel_mechanism* mechanism, koppel_wor
     CHECK(report.verdict == KOPPEL_VERDICT_CLOSED && report.residual < 1e-13 && report.rank == 15);
     CHECK_OK(koppel_analyse(state, work, &analysis, NULL));
     CHECK(analysis.mobility_count == 2 && analysis.mobility_rank == 2);
+    SIZED(koppel_freedoms, freedoms);
+    CHECK_OK(koppel_find_freedoms(state, work, &freedoms, NULL));
+    CHECK(freedoms.mobility_here == 2 && freedoms.mobility_by_kind == 2 && freedoms.indeterminate == 0);
+    char text[8192];
+    size_t needed = 0;
+    CHECK_OK(koppel_explain_freedoms(state, work, text, sizeof text, &needed));
+    CHECK(strstr(text, "Freedoms: 2 by rank") != NULL);
     koppel_state_destroy(state);
   }
 }

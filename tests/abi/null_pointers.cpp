@@ -124,6 +124,12 @@ TEST_F(NullPointers, OfSolversAreRefused) {
   EXPECT_EQ(koppel_analyse(nullptr, work, &analysis, nullptr), refused);
   EXPECT_EQ(koppel_analyse(state, nullptr, &analysis, nullptr), refused);
   EXPECT_EQ(koppel_analyse(state, work, nullptr, nullptr), refused);
+  auto freedoms = sized<koppel_freedoms>();
+  EXPECT_EQ(koppel_find_freedoms(nullptr, work, &freedoms, nullptr), refused);
+  EXPECT_EQ(koppel_find_freedoms(state, nullptr, &freedoms, nullptr), refused);
+  EXPECT_EQ(koppel_find_freedoms(state, work, nullptr, nullptr), refused);
+  EXPECT_EQ(koppel_explain_freedoms(nullptr, work, text, sizeof text, nullptr), refused);
+  EXPECT_EQ(koppel_explain_freedoms(state, nullptr, text, sizeof text, nullptr), refused);
   EXPECT_TRUE(out.untouched());
   EXPECT_TRUE(read(host) == before);
 }

@@ -77,6 +77,8 @@ TEST(StructSizes, OfOutputsMayDiffer) {
       [&](auto* out) { EXPECT_GE(koppel_close(state, work, nullptr, out, nullptr), KOPPEL_OK); });
   expect_all_ages_served<koppel_analysis>(
       [&](auto* out) { EXPECT_EQ(koppel_analyse(state, work, out, nullptr), KOPPEL_OK); });
+  expect_all_ages_served<koppel_freedoms>(
+      [&](auto* out) { EXPECT_EQ(koppel_find_freedoms(state, work, out, nullptr), KOPPEL_OK); });
 }
 
 TEST(StructSizes, OfErrorsMayDiffer) {

@@ -62,6 +62,8 @@ class Check(ProgramTest):
     def test_json_counts_freedoms_loops_and_redundant_equations(self):
         document = self.json(FINE, "check", self.write("scene.toml", FOURBAR))
         self.assertEqual(document["mobility"], {"count": -2, "rank": 1})
+        self.assertEqual(document["freedoms"], {"by_kind": 1, "nearby": 1, "planar_loops": 1, "spherical_loops": 0,
+                                                "isolated": 0, "indeterminate": 4, "shaky": False})
         self.assertEqual(document["loops"], 1)
         self.assertEqual(document["diagnostics"], [])
         self.assertIs(document["closed"], True)
@@ -131,6 +133,16 @@ class Explain(ProgramTest):
 
     def test_a_scene_is_explained(self):
         self.assertIn("crank", self.expect(FINE, "koppel", "explain", self.write("scene.toml", FOURBAR)).stdout)
+
+    def test_the_freedoms_of_a_scene_are_explained(self):
+        text = self.expect(FINE, "koppel", "explain", self.write("scene.toml", FOURBAR)).stdout
+        self.assertIn("planar across (0, 0, 1), three equations", text)
+        self.assertIn("rocker: moment about x y, force along z", text)
+
+    def test_what_does_not_close_is_explained_without_freedoms(self):
+        text = self.expect(FINE, "koppel", "explain", self.write("far.toml", FAR)).stdout
+        self.assertIn("Spanning tree", text)
+        self.assertIn("does not close at t = 0", text)
 
 
 class Run(ProgramTest):

@@ -276,6 +276,28 @@ typedef struct koppel_analysis {
 KOPPEL_EXPORT koppel_status koppel_analyse(const koppel_state* state, koppel_work* work, koppel_analysis* analysis,
                                            koppel_error* error);
 
+/* The freedoms at the present position, inputs taken for free, and why counting them gives what it gives. */
+typedef struct koppel_freedoms {
+  uint32_t struct_size;
+  int32_t mobility_by_kind; /* Gruebler, with three equations for planar and spherical loops */
+  int32_t mobility_here;    /* by rank */
+  int32_t mobility_nearby;  /* by rank at closed positions near by: less in a singular position */
+  uint32_t redundant_here;  /* equations that follow from the others */
+  uint32_t redundant_nearby;
+  uint32_t planar_loops;
+  uint32_t spherical_loops;
+  uint32_t isolated;      /* freedoms of one body alone, as of a link between two balls */
+  uint32_t indeterminate; /* joints whose reactions statics alone does not determine */
+  int32_t shaky;          /* 1: gives way here, but has no other closed position near by */
+} koppel_freedoms;
+
+/* The state must be closed: INVALID_ARGUMENT. */
+KOPPEL_EXPORT koppel_status koppel_find_freedoms(const koppel_state* state, koppel_work* work,
+                                                 koppel_freedoms* freedoms, koppel_error* error);
+/* The same as a page of text, with names, axes and places; the bodies' screw axes if the state has velocities. */
+KOPPEL_EXPORT koppel_status koppel_explain_freedoms(const koppel_state* state, koppel_work* work, char* text,
+                                                    size_t size, size_t* needed);
+
 /* ------------------------------------------------------------------------------------------------ results */
 
 /* what: KOPPEL_KIND_BODY or KOPPEL_KIND_FRAME. poses: 12 numbers each, in the world, of all `bodies` or all `frames`.

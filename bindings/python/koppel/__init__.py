@@ -7,8 +7,8 @@ from .engine import Engine, Scene, load
 from .error import Error, Finding
 from .mechanism import Mechanism
 from .run import run
-from .state import Analysis, Report, State
+from .state import Analysis, Freedoms, Report, State
 from .stream import Statistics, Stream
 
-__all__ = ["Analysis", "Engine", "Error", "Finding", "Mechanism", "Report", "Scene", "State", "Statistics", "Stream",
+__all__ = ["Analysis", "Engine", "Error", "Finding", "Freedoms", "Mechanism", "Report", "Scene", "State", "Statistics", "Stream",
            "load", "run"]

@@ -55,6 +55,8 @@ _ARGUMENTS = {
     "koppel_accelerations": (_HANDLE, _HANDLE, _ERROR),
     "koppel_move": (_HANDLE, _HANDLE, c.c_double, c.POINTER(structs.Report), _ERROR),
     "koppel_analyse": (_HANDLE, _HANDLE, c.POINTER(structs.Analysis), _ERROR),
+    "koppel_find_freedoms": (_HANDLE, _HANDLE, c.POINTER(structs.Freedoms), _ERROR),
+    "koppel_explain_freedoms": (_HANDLE, _HANDLE, *_TEXT),
     "koppel_poses": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
     "koppel_twists": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
     "koppel_frame_accelerations": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),

@@ -6,7 +6,7 @@ import dataclasses
 import numpy
 
 from . import structs
-from .library import Handle, call, call_plain, library, numbers, pointer
+from .library import Handle, call, call_plain, library, numbers, pointer, text
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,6 +54,24 @@ class Analysis:
     largest_singular_value: float
     last_singular_value: float
     gap: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Freedoms:
+    """Freedoms at a closed position, inputs taken for free: by count with the kinds of the loops, by rank here and near
+    by; equations that follow from others; freedoms of one body alone; joints whose reactions statics does not
+    determine."""
+
+    mobility_by_kind: int
+    mobility_here: int
+    mobility_nearby: int
+    redundant_here: int
+    redundant_nearby: int
+    planar_loops: int
+    spherical_loops: int
+    isolated: int
+    indeterminate: int
+    shaky: bool
 
 
 class Work(Handle):
@@ -149,6 +167,16 @@ class State(Handle):
         struct = structs.Analysis()
         call("koppel_analyse", self.handle, self.work.handle, struct)
         return Analysis(*(getattr(struct, field.name) for field in dataclasses.fields(Analysis)))
+
+    def freedoms(self):
+        """The freedoms where the closed state stands, and what makes counts and rank differ."""
+        struct = structs.Freedoms()
+        call("koppel_find_freedoms", self.handle, self.work.handle, struct)
+        return Freedoms(*(field.type(getattr(struct, field.name)) for field in dataclasses.fields(Freedoms)))
+
+    def explain_freedoms(self):
+        """The same as a page of text, with the names of bodies and joints."""
+        return text("koppel_explain_freedoms", self.handle, self.work.handle)
 
     def poses(self, kind="body"):
         """(bodies or frames, 3, 4): rotation matrix and, as last column, position in the world [m]."""

@@ -72,6 +72,13 @@ class Analysis(Sized):
                 ("largest_singular_value", c.c_double), ("last_singular_value", c.c_double), ("gap", c.c_double)]
 
 
+class Freedoms(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("mobility_by_kind", c.c_int32), ("mobility_here", c.c_int32),
+                ("mobility_nearby", c.c_int32), ("redundant_here", c.c_uint32), ("redundant_nearby", c.c_uint32),
+                ("planar_loops", c.c_uint32), ("spherical_loops", c.c_uint32), ("isolated", c.c_uint32),
+                ("indeterminate", c.c_uint32), ("shaky", c.c_int32)]
+
+
 class StreamOptions(Sized):
     _fields_ = [("struct_size", c.c_uint32), ("url", c.c_char_p), ("name", c.c_char_p), ("period", c.c_double)]
 

@@ -1,0 +1,277 @@
+#include "closure/freedoms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
+#include "closure/loop_kind.hpp"
+#include "closure/newton.hpp"
+
+namespace koppel {
+namespace {
+
+constexpr double nearby = 1e-3;           // [rad] or lengths of the mechanism
+constexpr double stayed = 1e-2 * nearby;  // who comes back closer than this has not moved
+constexpr int attempts = 3;
+constexpr double negligible = 1e-8;  // half the digits: of a velocity, or a load, beside others
+
+/// Rank, freedoms and states of self-stress of the Jacobian of all tree rates.
+struct Spaces {
+  Eigen::Index rank = 0;
+  Eigen::MatrixXd motions;   ///< columns: scaled rates that keep all loops closed
+  Eigen::MatrixXd stresses;  ///< columns: multipliers of the scaled equations that load no rate
+};
+
+Eigen::Index rank_of(const Eigen::VectorXd& values, const Eigen::MatrixXd& jacobian) {
+  if (values.size() == 0) return 0;
+  const double size = static_cast<double>(std::max(jacobian.rows(), jacobian.cols()));
+  return (values.array() > 10.0 * size * std::numeric_limits<double>::epsilon() * values[0]).count();
+}
+
+Spaces spaces_of(const Eigen::MatrixXd& jacobian) {
+  Spaces spaces;
+  if (jacobian.size() == 0) {
+    spaces.motions = Eigen::MatrixXd::Identity(jacobian.cols(), jacobian.cols());
+    spaces.stresses = Eigen::MatrixXd::Identity(jacobian.rows(), jacobian.rows());
+    return spaces;
+  }
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  spaces.rank = rank_of(svd.singularValues(), jacobian);
+  spaces.motions = svd.matrixV().rightCols(jacobian.cols() - spaces.rank);
+  spaces.stresses = svd.matrixU().rightCols(jacobian.rows() - spaces.rank);
+  return spaces;
+}
+
+/// Rates of the state from scaled rates of the columns.
+Eigen::VectorXd rates_of(const Mechanism& mechanism, const Eigen::VectorXd& scaled) {
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(mechanism.nv);
+  for (Eigen::Index i = 0; i < scaled.size(); ++i) {
+    const std::uint32_t rate = mechanism.rate_of_column[static_cast<std::size_t>(i)];
+    v[rate] = mechanism.rate_scale[rate] * scaled[i];
+  }
+  return v;
+}
+
+bool evaluate(Work& work, const Eigen::VectorXd& q, double time) {
+  work.factorised = false;
+  if (!work.equations.evaluate(q, time)) return false;
+  work.equations.evaluate_jacobian();
+  return true;
+}
+
+/// The joint that has this rate.
+JointId joint_of_rate(const Mechanism& mechanism, std::uint32_t rate) {
+  const auto after = std::upper_bound(mechanism.blocks.begin(), mechanism.blocks.end(), rate,
+                                      [](std::uint32_t r, const StateBlock& block) { return r < block.v; });
+  return std::prev(after)->joint;
+}
+
+/// Motions of all joints of a loop, in the world. A joint that is no product of elementary motions has none that last:
+/// false.
+bool loop_motions(const Work& work, const Eigen::VectorXd& q, std::size_t index, std::vector<Column>& motions) {
+  const Mechanism& mechanism = *work.mechanism;
+  const Relation& relation = mechanism.relations[index];
+  motions.clear();
+  for (const PathRate& path : relation.path) {
+    if (!mechanism.joints[joint_of_rate(mechanism, path.rate).index()].is_product()) return false;
+    motions.push_back(work.equations.kinematics.columns[path.rate]);
+  }
+  if (relation.kind != RelationKind::cut_joint) return true;
+  const Joint& joint = mechanism.joints[relation.joint.index()];
+  if (!joint.is_product()) return false;
+  std::array<Column, max_joint_rates> columns;
+  Pose frame = work.equations.frame_a(index);
+  if (!joint.step(q.data() + joint.q, false, frame, columns.data())) return false;
+  motions.insert(motions.end(), columns.begin(), columns.begin() + joint.nv);
+  return true;
+}
+
+void find_kinds(const Work& work, const Eigen::VectorXd& q, Freedoms& freedoms) {
+  const Mechanism& mechanism = *work.mechanism;
+  freedoms.mobility_by_kind = mechanism.mobility_count;
+  std::vector<Column> motions;
+  for (std::size_t i = 0; i < mechanism.loops; ++i) {
+    const bool lasting = loop_motions(work, q, i, motions);
+    freedoms.loops.push_back(lasting ? loop_kind(motions, mechanism.length) : LoopFreedoms{});
+    if (freedoms.loops.back().kind != LoopKind::spatial) freedoms.mobility_by_kind += 3;
+  }
+}
+
+/// Ranks at closed positions on all sides of this one.
+bool look_nearby(Work& work, const State& state, const Spaces& here, Freedoms& freedoms) {
+  const Mechanism& mechanism = *work.mechanism;
+  Eigen::Index greatest = here.rank;
+  // What is rigid, or has no loops, is the same everywhere.
+  const bool same = here.motions.cols() == 0 || mechanism.rows == 0;
+  bool moved = same;
+  for (int attempt = 0; attempt < attempts && !same; ++attempt) {
+    // Some combination of all motions, the same in every run.
+    const Eigen::VectorXd weights = Eigen::VectorXd::NullaryExpr(here.motions.cols(), [attempt](Eigen::Index i) {
+      return std::cos(1.0 + static_cast<double>(attempt) + 2.7 * static_cast<double>(i));
+    });
+    const Eigen::VectorXd way = here.motions * weights;
+    work.delta = rates_of(mechanism, nearby / way.lpNorm<Eigen::Infinity>() * way);
+    integrate(mechanism, state.q, work.delta, work.q);
+    NewtonOptions options;
+    options.inputs = InputsAre::free;
+    const NewtonResult result = newton(work, state.time, options);
+    if (result.plugin_failed) return false;
+    if (!result.converged) continue;
+    difference(mechanism, state.q, work.q, work.delta);
+    double most = 0.0;
+    for (const std::uint32_t rate : mechanism.rate_of_column) {
+      most = std::max(most, std::abs(work.delta[rate]) / mechanism.rate_scale[rate]);
+    }
+    if (most < stayed) continue;
+    moved = true;
+    work.equations.evaluate_jacobian();
+    const Eigen::VectorXd values = Eigen::BDCSVD<Eigen::MatrixXd>(work.equations.jacobian).singularValues();
+    greatest = std::max(greatest, rank_of(values, work.equations.jacobian));
+  }
+  const auto columns = static_cast<std::int32_t>(mechanism.columns);
+  freedoms.mobility_here = columns - static_cast<std::int32_t>(here.rank);
+  freedoms.mobility_nearby = columns - static_cast<std::int32_t>(greatest);
+  freedoms.redundant_here = mechanism.rows - static_cast<std::uint32_t>(here.rank);
+  freedoms.redundant_nearby = mechanism.rows - static_cast<std::uint32_t>(greatest);
+  freedoms.shaky = !moved;
+  return true;
+}
+
+/// How many joints and constraints hold each body.
+std::vector<int> holds(const Mechanism& mechanism) {
+  std::vector<int> count(mechanism.bodies.size(), 0);
+  for (const Joint& joint : mechanism.joints) {
+    ++count[joint.inlet.body.index()];
+    ++count[joint.outlet.body.index()];
+  }
+  for (const Relation& relation : mechanism.relations) {
+    if (relation.kind != RelationKind::constraint || !relation.has_frames) continue;
+    ++count[relation.node_a];
+    ++count[relation.node_b];
+  }
+  return count;
+}
+
+Twist twist_of(const Kinematics& kinematics, Node node) {
+  const FrameMotion& motion = kinematics.motions[node];
+  return shifted(Twist{motion.angular_velocity, motion.velocity}, Vector3(-motion.at));
+}
+
+/// Bodies that move in some combination of the motions while no other does.
+bool find_isolated(Work& work, const State& state, const Spaces& here, Freedoms& freedoms) {
+  const Mechanism& mechanism = *work.mechanism;
+  const Eigen::Index count = here.motions.cols();
+  const auto bodies = static_cast<Eigen::Index>(mechanism.bodies.size());
+  if (count == 0) return true;
+  // Twists of all bodies, angular above linear over the length, for each motion.
+  Eigen::MatrixXd twists(6 * bodies, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    work.delta = rates_of(mechanism, here.motions.col(k));
+    if (!work.equations.motion(state.q, work.delta, work.rest)) return false;
+    for (Eigen::Index body = 0; body < bodies; ++body) {
+      const FrameMotion& motion = work.equations.kinematics.motions[static_cast<std::size_t>(body)];
+      twists.col(k).segment<6>(6 * body) << motion.angular_velocity, motion.velocity / mechanism.length;
+    }
+  }
+  const Eigen::MatrixXd all = twists.transpose() * twists;
+  const std::vector<int> held = holds(mechanism);
+  for (Eigen::Index body = 1; body < bodies; ++body) {
+    if (held[static_cast<std::size_t>(body)] < 2) continue;
+    const auto own = twists.middleRows<6>(6 * body);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> others(all - own.transpose() * own);
+    for (Eigen::Index k = 0; k < count && others.eigenvalues()[k] <= negligible * negligible; ++k) {
+      const Eigen::VectorXd combination = others.eigenvectors().col(k);
+      if (!((own * combination).norm() > negligible)) continue;  // nothing moves but what has no body of its own
+      work.delta = rates_of(mechanism, here.motions * combination);
+      if (!work.equations.motion(state.q, work.delta, work.rest)) return false;
+      const Twist twist = twist_of(work.equations.kinematics, static_cast<Node>(body));
+      freedoms.isolated.push_back({{static_cast<std::uint32_t>(body)}, screw_axis(twist, mechanism.length)});
+    }
+  }
+  return true;
+}
+
+/// The wrench that each joint carries in a state of self-stress, about the world's origin.
+std::vector<Wrench> carried(const Work& work, const Eigen::VectorXd& stress) {
+  const Mechanism& mechanism = *work.mechanism;
+  std::vector<Wrench> wrenches(mechanism.joints.size());
+  for (std::size_t i = 0; i < mechanism.relations.size(); ++i) {
+    const Relation& relation = mechanism.relations[i];
+    if (!relation.has_frames) continue;
+    const Wrench wrench = work.equations.reaction(i, stress);
+    std::int64_t last = -1;
+    for (const PathRate& path : relation.path) {
+      const JointId joint = joint_of_rate(mechanism, path.rate);
+      if (last == joint.value) continue;  // once for all rates of a joint, which are neighbours
+      last = joint.value;
+      wrenches[joint.index()] = wrenches[joint.index()] + path.sign * wrench;
+    }
+    if (relation.kind == RelationKind::cut_joint) wrenches[relation.joint.index()] = wrench;
+  }
+  return wrenches;
+}
+
+std::vector<Pose> inlets(const Work& work) {
+  const Mechanism& mechanism = *work.mechanism;
+  std::vector<Pose> poses(mechanism.joints.size());
+  for (std::size_t i = 0; i < mechanism.steps.size(); ++i) {
+    const TreeStep& step = mechanism.steps[i];
+    const Kinematics& kinematics = work.equations.kinematics;
+    poses[step.joint.index()] = step.reversed ? kinematics.far[i] : kinematics.near[i];
+  }
+  for (std::size_t i = 0; i < mechanism.loops; ++i) {
+    if (mechanism.relations[i].kind == RelationKind::cut_joint) {
+      poses[mechanism.relations[i].joint.index()] = work.equations.frame_a(i);
+    }
+  }
+  return poses;
+}
+
+void find_indeterminate(const Work& work, const Spaces& here, Freedoms& freedoms) {
+  const Mechanism& mechanism = *work.mechanism;
+  const std::vector<Pose> frames = inlets(work);
+  std::vector<IndeterminateReaction> reactions(mechanism.joints.size());
+  for (Eigen::Index k = 0; k < here.stresses.cols(); ++k) {
+    std::vector<Wrench> wrenches = carried(work, here.stresses.col(k));
+    double greatest = 0.0;
+    for (std::size_t j = 0; j < wrenches.size(); ++j) {
+      wrenches[j] = transformed(frames[j].inverse(), wrenches[j]);
+      wrenches[j].moment /= mechanism.length;
+      greatest = std::max(greatest, wrenches[j].vector().lpNorm<Eigen::Infinity>());
+    }
+    for (std::size_t j = 0; j < wrenches.size(); ++j) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        reactions[j].moment[a] |= std::abs(wrenches[j].moment[axis]) > negligible * greatest;
+        reactions[j].force[a] |= std::abs(wrenches[j].force[axis]) > negligible * greatest;
+      }
+    }
+  }
+  for (std::size_t j = 0; j < reactions.size(); ++j) {
+    const auto any = [](const std::array<bool, 3>& axes) { return axes[0] || axes[1] || axes[2]; };
+    reactions[j].joint = {static_cast<std::uint32_t>(j)};
+    if (any(reactions[j].moment) || any(reactions[j].force)) freedoms.indeterminate.push_back(reactions[j]);
+  }
+}
+
+}  // namespace
+
+bool find_freedoms(Work& work, const State& state, Freedoms& freedoms) {
+  freedoms = Freedoms{};
+  if (!evaluate(work, state.q, state.time)) return false;
+  const Spaces here = spaces_of(work.equations.jacobian);
+  find_kinds(work, state.q, freedoms);
+  find_indeterminate(work, here, freedoms);
+  if (!find_isolated(work, state, here, freedoms)) return false;
+  if (state.stage >= Stage::velocities) {
+    if (!work.equations.motion(state.q, state.v, work.rest)) return false;
+    for (Node body = 0; body < work.mechanism->bodies.size(); ++body) {
+      freedoms.axes.push_back(screw_axis(twist_of(work.equations.kinematics, body), work.mechanism->length));
+    }
+  }
+  return look_nearby(work, state, here, freedoms);
+}
+
+}  // namespace koppel

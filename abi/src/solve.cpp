@@ -101,7 +101,7 @@ koppel_status freedoms_of(const koppel_state* state, koppel_work* work, koppel::
   const auto explained = [&](koppel_status status) {
     return explain_failure(status, work->work, state->state.time, nullptr, error);
   };
-  if (state->state.stage == koppel::Stage::assigned) return explained(KOPPEL_INVALID_ARGUMENT);
+  if (!koppel::is_closed(*state->mechanism, state->state)) return explained(KOPPEL_INVALID_ARGUMENT);
   return koppel::find_freedoms(work->work, state->state, freedoms) ? KOPPEL_OK : explained(KOPPEL_PLUGIN);
 }
 

@@ -38,12 +38,12 @@ void print_mobility(const koppel_analysis& analysis, const std::optional<koppel_
   std::puts("");
   if (!freedoms) return;
   if (freedoms->isolated > 0) {
-    std::printf("isolated    %u of the freedoms: one body moves alone\n", freedoms->isolated);
+    std::printf("isolated    %u of the freedoms, in which one body moves alone\n", freedoms->isolated);
   }
   if (freedoms->shaky != 0) {
     std::puts("remark      shaky: gives way here, but has no other closed position near by");
   } else if (freedoms->mobility_nearby < freedoms->mobility_here) {
-    std::printf("remark      a singular position: near by it has %d freedoms\n", freedoms->mobility_nearby);
+    std::printf("remark      a singular position: near by the mobility is %d\n", freedoms->mobility_nearby);
   }
 }
 

@@ -1,6 +1,5 @@
 #include "closure/analysis.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include <Eigen/SVD>
@@ -17,8 +16,7 @@ bool analyse(Work& work, const State& state, Analysis& analysis) {
   analysis.mobility_count = mechanism.mobility_count;
   if (work.equations.jacobian.size() > 0) {
     const Eigen::VectorXd values = Eigen::BDCSVD<Eigen::MatrixXd>(work.equations.jacobian).singularValues();
-    const double threshold = 10.0 * static_cast<double>(std::max(mechanism.rows, mechanism.columns)) *
-                             std::numeric_limits<double>::epsilon() * values[0];
+    const double threshold = rank_tolerance(mechanism.rows, mechanism.columns, values[0]);
     const Eigen::Index rank = (values.array() > threshold).count();
     analysis.rank = static_cast<std::uint32_t>(rank);
     analysis.largest_singular_value = values[0];

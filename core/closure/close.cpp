@@ -30,8 +30,7 @@ bool rates_taken(const Mechanism& mechanism, const State& state) {
 
 /// The position is closed for the inputs and the time that the state has now.
 bool closed_here(const Mechanism& mechanism, const State& state) {
-  return state.stage != Stage::assigned && inputs_taken(mechanism, state) &&
-         (!mechanism.explicit_time || state.time == state.history.time);
+  return is_closed(mechanism, state) && inputs_taken(mechanism, state);
 }
 
 /// Puts a state back to what it was, unless it is told that all went well.
@@ -135,6 +134,10 @@ void subtract_driven(Work& work, const Eigen::VectorXd& rates) {
 }
 
 }  // namespace
+
+bool is_closed(const Mechanism& mechanism, const State& state) {
+  return state.stage != Stage::assigned && (!mechanism.explicit_time || state.time == state.history.time);
+}
 
 koppel_status close(Work& work, State& state, const CloseOptions& options, Report& report) {
   const Mechanism& mechanism = *work.mechanism;

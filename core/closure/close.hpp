@@ -24,6 +24,9 @@ struct CloseOptions {
 /// KOPPEL_RETRY and KOPPEL_PLUGIN leave the state untouched.
 koppel_status close(Work& work, State& state, const CloseOptions& options, Report& report);
 
+/// Whether the loops are closed at the state's position and time; its inputs may ask for another position by now.
+bool is_closed(const Mechanism& mechanism, const State& state);
+
 /// Rates of a closed state from those of its inputs (K-II-3.5.1b); free motions get the least norm. KOPPEL_SINGULAR:
 /// the inputs' rates are impossible here. KOPPEL_INVALID_ARGUMENT: the state is not closed.
 koppel_status velocities(Work& work, State& state);

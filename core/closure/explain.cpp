@@ -95,10 +95,11 @@ std::string text_of(const IndeterminateReaction& reaction) {
 
 void explain_loop(const LoopFreedoms& loop, std::ostream& out) {
   switch (loop.kind) {
-    case LoopKind::spatial: out << "spatial, six equations\n"; return;
-    case LoopKind::planar: out << "planar across " << text_of(loop.normal) << ", three equations\n"; return;
-    case LoopKind::spherical: out << "spherical about " << text_of(loop.centre) << ", three equations\n"; return;
+    case LoopKind::spatial: out << "spatial"; break;
+    case LoopKind::planar: out << "planar across " << text_of(loop.normal); break;
+    case LoopKind::spherical: out << "spherical about " << text_of(loop.centre); break;
   }
+  out << ", closed by " << plural(static_cast<std::size_t>(loop.conditions), "condition", "conditions") << '\n';
 }
 
 void explain_redundancy(const Mechanism& mechanism, const Freedoms& freedoms, std::ostream& out) {
@@ -111,7 +112,9 @@ void explain_redundancy(const Mechanism& mechanism, const Freedoms& freedoms, st
   } else if (freedoms.mobility_nearby < freedoms.mobility_here) {
     out << "Singular position: motions are possible here that are not near by\n";
   }
-  if (freedoms.mobility_nearby > freedoms.mobility_by_kind) {
+  if (freedoms.mobility_here < freedoms.mobility_by_kind) {
+    out << "Fewer freedoms than the count: axes are parallel, or meet, only to half the digits\n";
+  } else if (!freedoms.shaky && freedoms.mobility_nearby > freedoms.mobility_by_kind) {
     out << "Overconstrained: "
         << plural(static_cast<std::size_t>(freedoms.mobility_nearby - freedoms.mobility_by_kind), "freedom", "freedoms")
         << " more than the count, owed to its exact measures alone\n";
@@ -164,8 +167,10 @@ std::string explain(const Mechanism& mechanism, const Freedoms& freedoms) {
   explain_redundancy(mechanism, freedoms, out);
   for (const IsolatedFreedom& freedom : freedoms.isolated) {
     out << "Isolated freedom: " << mechanism.bodies[freedom.body.index()].name << ' ' << text_of(freedom.axis)
-        << " while all others rest; a joint with one freedom less at one end, such as a universal joint for a ball, "
-           "holds it\n";
+        << " while all others rest\n";
+  }
+  if (!freedoms.isolated.empty()) {
+    out << "  An isolated freedom is held by a joint with one freedom less: a universal joint for one of two balls\n";
   }
   if (!freedoms.indeterminate.empty()) {
     out << "Reactions that statics alone does not determine, along the axes of the joint's inlet frame\n";

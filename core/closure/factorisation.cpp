@@ -6,6 +6,10 @@
 
 namespace koppel {
 
+double rank_tolerance(Eigen::Index rows, Eigen::Index columns, double largest) {
+  return 10.0 * static_cast<double>(std::max(rows, columns)) * std::numeric_limits<double>::epsilon() * largest;
+}
+
 Factorisation::Factorisation(Eigen::Index rows, Eigen::Index columns)
     : left_(rows, columns), right_(columns, std::min(rows, columns)) {
   high_.resize(std::max(rows, columns));
@@ -18,8 +22,7 @@ void Factorisation::compute(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
     return;
   }
   left_.compute(matrix);
-  const double threshold = 10.0 * static_cast<double>(std::max(matrix.rows(), matrix.cols())) *
-                           std::numeric_limits<double>::epsilon() * std::abs(left_.maxPivot());
+  const double threshold = rank_tolerance(matrix.rows(), matrix.cols(), std::abs(left_.maxPivot()));
   const auto pivots = left_.matrixQR().diagonal();
   rank_ = 0;
   while (rank_ < pivots.size() && std::abs(pivots[rank_]) > threshold) ++rank_;

@@ -7,13 +7,16 @@
 
 namespace koppel {
 
+/// Singular values, or pivots, up to this count as zero: 10 max(m, n) eps times the largest.
+double rank_tolerance(Eigen::Index rows, Eigen::Index columns, double largest);
+
 /// A P = Q [T; 0] with column pivoting and T of full row rank; where T is wide, T' is factorised too (a complete
 /// orthogonal decomposition), so that solutions have the least norm.
 class Factorisation {
  public:
   Factorisation(Eigen::Index rows, Eigen::Index columns);
 
-  /// Factorises. Rank: pivots above 10 max(m, n) eps times the largest.
+  /// Factorises. Rank: pivots above rank_tolerance().
   void compute(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
   Eigen::Index rank() const { return rank_; }

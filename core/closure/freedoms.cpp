@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "closure/factorisation.hpp"
 #include "closure/loop_kind.hpp"
 #include "closure/newton.hpp"
+#include "spatial/vector.hpp"
 
 namespace koppel {
 namespace {
@@ -15,7 +18,8 @@ namespace {
 constexpr double nearby = 1e-3;           // [rad] or lengths of the mechanism
 constexpr double stayed = 1e-2 * nearby;  // who comes back closer than this has not moved
 constexpr int attempts = 3;
-constexpr double negligible = 1e-8;  // half the digits: of a velocity, or a load, beside others
+constexpr double negligible = 1e-8;    // half the digits: of a velocity, or a load, beside others
+constexpr double alone = 1.0 - 1e-12;  // all others move less than a millionth of what the body does
 
 /// Rank, freedoms and states of self-stress of the Jacobian of all tree rates.
 struct Spaces {
@@ -26,8 +30,7 @@ struct Spaces {
 
 Eigen::Index rank_of(const Eigen::VectorXd& values, const Eigen::MatrixXd& jacobian) {
   if (values.size() == 0) return 0;
-  const double size = static_cast<double>(std::max(jacobian.rows(), jacobian.cols()));
-  return (values.array() > 10.0 * size * std::numeric_limits<double>::epsilon() * values[0]).count();
+  return (values.array() > rank_tolerance(jacobian.rows(), jacobian.cols(), values[0])).count();
 }
 
 Spaces spaces_of(const Eigen::MatrixXd& jacobian) {
@@ -95,12 +98,12 @@ void find_kinds(const Work& work, const Eigen::VectorXd& q, Freedoms& freedoms) 
   for (std::size_t i = 0; i < mechanism.loops; ++i) {
     const bool lasting = loop_motions(work, q, i, motions);
     freedoms.loops.push_back(lasting ? loop_kind(motions, mechanism.length) : LoopFreedoms{});
-    if (freedoms.loops.back().kind != LoopKind::spatial) freedoms.mobility_by_kind += 3;
+    freedoms.mobility_by_kind += 6 - freedoms.loops.back().conditions;
   }
 }
 
-/// Ranks at closed positions on all sides of this one.
-bool look_nearby(Work& work, const State& state, const Spaces& here, Freedoms& freedoms) {
+/// Ranks at some closed positions around this one.
+void look_nearby(Work& work, const State& state, const Spaces& here, Freedoms& freedoms) {
   const Mechanism& mechanism = *work.mechanism;
   Eigen::Index greatest = here.rank;
   // What is rigid, or has no loops, is the same everywhere.
@@ -117,8 +120,8 @@ bool look_nearby(Work& work, const State& state, const Spaces& here, Freedoms& f
     NewtonOptions options;
     options.inputs = InputsAre::free;
     const NewtonResult result = newton(work, state.time, options);
-    if (result.plugin_failed) return false;
-    if (!result.converged) continue;
+    // A plugin need not answer beside the position where it does.
+    if (result.plugin_failed || !result.converged) continue;
     difference(mechanism, state.q, work.q, work.delta);
     double most = 0.0;
     for (const std::uint32_t rate : mechanism.rate_of_column) {
@@ -136,21 +139,22 @@ bool look_nearby(Work& work, const State& state, const Spaces& here, Freedoms& f
   freedoms.redundant_here = mechanism.rows - static_cast<std::uint32_t>(here.rank);
   freedoms.redundant_nearby = mechanism.rows - static_cast<std::uint32_t>(greatest);
   freedoms.shaky = !moved;
-  return true;
 }
 
-/// How many joints and constraints hold each body.
-std::vector<int> holds(const Mechanism& mechanism) {
-  std::vector<int> count(mechanism.bodies.size(), 0);
-  for (const Joint& joint : mechanism.joints) {
-    ++count[joint.inlet.body.index()];
-    ++count[joint.outlet.body.index()];
-  }
+/// Between how many other bodies each body is held, by joints and constraints.
+std::vector<std::size_t> neighbours(const Mechanism& mechanism) {
+  std::vector<std::set<std::size_t>> others(mechanism.bodies.size());
+  const auto join = [&others](std::size_t a, std::size_t b) {
+    if (std::max(a, b) >= others.size()) return;
+    others[a].insert(b);
+    others[b].insert(a);
+  };
+  for (const Joint& joint : mechanism.joints) join(joint.inlet.body.index(), joint.outlet.body.index());
   for (const Relation& relation : mechanism.relations) {
-    if (relation.kind != RelationKind::constraint || !relation.has_frames) continue;
-    ++count[relation.node_a];
-    ++count[relation.node_b];
+    if (relation.kind == RelationKind::constraint && relation.has_frames) join(relation.node_a, relation.node_b);
   }
+  std::vector<std::size_t> count;
+  for (const auto& bodies : others) count.push_back(bodies.size());
   return count;
 }
 
@@ -159,12 +163,42 @@ Twist twist_of(const Kinematics& kinematics, Node node) {
   return shifted(Twist{motion.angular_velocity, motion.velocity}, Vector3(-motion.at));
 }
 
+/// The axis of a twist in which what is rounding beside the greatest velocity [m/s] of all is nothing.
+ScrewAxis axis_of(Twist twist, double length, double greatest) {
+  const double least = negligible * greatest;
+  if (twist.angular.norm() * length <= least) twist.angular.setZero();
+  if (twist.linear.norm() <= least) twist.linear.setZero();
+  if (const auto axis = normalised<double>(twist.angular)) {
+    const double along = axis->dot(twist.linear);
+    if (std::abs(along) <= least) twist.linear -= along * *axis;
+  }
+  return screw_axis(twist, length);
+}
+
+double greatest_velocity(const Mechanism& mechanism, const Kinematics& kinematics) {
+  double greatest = 0.0;
+  for (Node body = 0; body < mechanism.bodies.size(); ++body) {
+    const Twist twist = twist_of(kinematics, body);
+    greatest = std::max({greatest, twist.angular.norm() * mechanism.length, twist.linear.norm()});
+  }
+  return greatest;
+}
+
+void find_axes(const Work& work, Freedoms& freedoms) {
+  const Mechanism& mechanism = *work.mechanism;
+  const Kinematics& kinematics = work.equations.kinematics;
+  const double greatest = greatest_velocity(mechanism, kinematics);
+  for (Node body = 0; body < mechanism.bodies.size(); ++body) {
+    freedoms.axes.push_back(axis_of(twist_of(kinematics, body), mechanism.length, greatest));
+  }
+}
+
 /// Bodies that move in some combination of the motions while no other does.
 bool find_isolated(Work& work, const State& state, const Spaces& here, Freedoms& freedoms) {
   const Mechanism& mechanism = *work.mechanism;
   const Eigen::Index count = here.motions.cols();
   const auto bodies = static_cast<Eigen::Index>(mechanism.bodies.size());
-  if (count == 0) return true;
+  if (count == 0 || mechanism.rows == 0) return true;
   // Twists of all bodies, angular above linear over the length, for each motion.
   Eigen::MatrixXd twists(6 * bodies, count);
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -175,19 +209,21 @@ bool find_isolated(Work& work, const State& state, const Spaces& here, Freedoms&
       twists.col(k).segment<6>(6 * body) << motion.angular_velocity, motion.velocity / mechanism.length;
     }
   }
-  const Eigen::MatrixXd all = twists.transpose() * twists;
-  const std::vector<int> held = holds(mechanism);
+  // In combinations of the motions in which all bodies together have the velocity one, a body that has it alone is
+  // isolated.
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(twists);
+  const auto r = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+  const std::vector<std::size_t> held = neighbours(mechanism);
   for (Eigen::Index body = 1; body < bodies; ++body) {
     if (held[static_cast<std::size_t>(body)] < 2) continue;
-    const auto own = twists.middleRows<6>(6 * body);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> others(all - own.transpose() * own);
-    for (Eigen::Index k = 0; k < count && others.eigenvalues()[k] <= negligible * negligible; ++k) {
-      const Eigen::VectorXd combination = others.eigenvectors().col(k);
-      if (!((own * combination).norm() > negligible)) continue;  // nothing moves but what has no body of its own
-      work.delta = rates_of(mechanism, here.motions * combination);
+    const Eigen::MatrixXd own = r.transpose().solve(twists.middleRows<6>(6 * body).transpose()).transpose();
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(own, Eigen::ComputeThinV);
+    for (Eigen::Index k = 0; k < svd.singularValues().size() && svd.singularValues()[k] > alone; ++k) {
+      work.delta = rates_of(mechanism, here.motions * r.solve(svd.matrixV().col(k)));
       if (!work.equations.motion(state.q, work.delta, work.rest)) return false;
       const Twist twist = twist_of(work.equations.kinematics, static_cast<Node>(body));
-      freedoms.isolated.push_back({{static_cast<std::uint32_t>(body)}, screw_axis(twist, mechanism.length)});
+      const double greatest = greatest_velocity(mechanism, work.equations.kinematics);
+      freedoms.isolated.push_back({{static_cast<std::uint32_t>(body)}, axis_of(twist, mechanism.length, greatest)});
     }
   }
   return true;
@@ -234,18 +270,14 @@ void find_indeterminate(const Work& work, const Spaces& here, Freedoms& freedoms
   const std::vector<Pose> frames = inlets(work);
   std::vector<IndeterminateReaction> reactions(mechanism.joints.size());
   for (Eigen::Index k = 0; k < here.stresses.cols(); ++k) {
-    std::vector<Wrench> wrenches = carried(work, here.stresses.col(k));
-    double greatest = 0.0;
+    // Multipliers of length one make moments of that size, and forces over the length.
+    const std::vector<Wrench> wrenches = carried(work, here.stresses.col(k));
     for (std::size_t j = 0; j < wrenches.size(); ++j) {
-      wrenches[j] = transformed(frames[j].inverse(), wrenches[j]);
-      wrenches[j].moment /= mechanism.length;
-      greatest = std::max(greatest, wrenches[j].vector().lpNorm<Eigen::Infinity>());
-    }
-    for (std::size_t j = 0; j < wrenches.size(); ++j) {
+      const Wrench wrench = transformed(frames[j].inverse(), wrenches[j]);
       for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
-        reactions[j].moment[a] |= std::abs(wrenches[j].moment[axis]) > negligible * greatest;
-        reactions[j].force[a] |= std::abs(wrenches[j].force[axis]) > negligible * greatest;
+        reactions[j].moment[a] |= std::abs(wrench.moment[axis]) > negligible;
+        reactions[j].force[a] |= std::abs(wrench.force[axis]) * mechanism.length > negligible;
       }
     }
   }
@@ -267,11 +299,10 @@ bool find_freedoms(Work& work, const State& state, Freedoms& freedoms) {
   if (!find_isolated(work, state, here, freedoms)) return false;
   if (state.stage >= Stage::velocities) {
     if (!work.equations.motion(state.q, state.v, work.rest)) return false;
-    for (Node body = 0; body < work.mechanism->bodies.size(); ++body) {
-      freedoms.axes.push_back(screw_axis(twist_of(work.equations.kinematics, body), work.mechanism->length));
-    }
+    find_axes(work, freedoms);
   }
-  return look_nearby(work, state, here, freedoms);
+  look_nearby(work, state, here, freedoms);
+  return true;
 }
 
 }  // namespace koppel

@@ -27,31 +27,46 @@ Elementary elementary(const Column& motion, double length) {
   return {axis, Vector3::Zero(), std::abs(axis.dot(motion.linear)) > tolerance * turning};
 }
 
-/// The direction that all translations are across; zero if they go all ways.
-Vector3 across_translations(std::span<const Column> motions) {
+/// Of directions: how many are independent, and the one that all are across if not all three are.
+struct Directions {
+  int rank = 0;
+  Vector3 across = Vector3::Zero();
+};
+
+Directions translations(std::span<const Column> motions) {
   Eigen::Matrix3Xd directions(3, static_cast<Eigen::Index>(std::max<std::size_t>(motions.size(), 3)));
   directions.setZero();
   for (std::size_t i = 0; i < motions.size(); ++i) {
     directions.col(static_cast<Eigen::Index>(i)) = motions[i].linear.normalized();
   }
   const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(directions, Eigen::ComputeFullU);
-  return svd.singularValues()[2] <= tolerance ? Vector3(svd.matrixU().col(2)) : Vector3::Zero();
+  const auto rank = static_cast<int>((svd.singularValues().array() > tolerance).count());
+  return {rank, rank < 3 ? Vector3(svd.matrixU().col(2)) : Vector3::Zero()};
 }
 
-/// The normal of the planes in which everything moves; zero if there is none.
-Vector3 plane_normal(std::span<const Column> motions, double length) {
-  Vector3 normal = Vector3::Zero();
+/// Loops in which all axes are parallel, or nothing turns; nothing of others.
+std::optional<LoopFreedoms> parallel(std::span<const Column> motions, double length) {
+  const Column* first = nullptr;
+  for (const Column& motion : motions) {
+    if (first == nullptr && elementary(motion, length).axis) first = &motion;
+  }
+  if (first == nullptr) {
+    const Directions directions = translations(motions);
+    const LoopKind kind = directions.rank < 3 ? LoopKind::planar : LoopKind::spatial;
+    return LoopFreedoms{kind, directions.rank, directions.across, Vector3::Zero()};
+  }
+  const Vector3 normal = first->angular.normalized();
+  bool along = false, across = false;
   for (const Column& motion : motions) {
     const Elementary e = elementary(motion, length);
-    if (e.axis && normal.isZero()) normal = *e.axis;
+    if (e.axis && normal.cross(*e.axis).norm() > tolerance) return std::nullopt;
+    along |= e.slides || (!e.axis && std::abs(normal.dot(e.direction)) > tolerance);
+    across |= e.axis ? normal.cross(motion.point - first->point).norm() > tolerance * length
+                     : normal.cross(e.direction).norm() > tolerance;
   }
-  if (normal.isZero()) return across_translations(motions);
-  for (const Column& motion : motions) {
-    const Elementary e = elementary(motion, length);
-    const double off = e.axis ? normal.cross(*e.axis).norm() : std::abs(normal.dot(e.direction));
-    if (e.slides || off > tolerance) return Vector3::Zero();
-  }
-  return normal;
+  const int conditions = (across ? 3 : 1) + (along ? 1 : 0);
+  if (along) return LoopFreedoms{LoopKind::spatial, conditions, Vector3::Zero(), Vector3::Zero()};
+  return LoopFreedoms{LoopKind::planar, conditions, normal, Vector3::Zero()};
 }
 
 /// The point that all axes meet in.
@@ -79,9 +94,8 @@ std::optional<Vector3> common_point(std::span<const Column> motions, double leng
 
 LoopFreedoms loop_kind(std::span<const Column> motions, double length) {
   if (motions.empty()) return {};
-  const Vector3 normal = plane_normal(motions, length);
-  if (!normal.isZero()) return {LoopKind::planar, normal, Vector3::Zero()};
-  if (const auto centre = common_point(motions, length)) return {LoopKind::spherical, Vector3::Zero(), *centre};
+  if (const auto found = parallel(motions, length)) return *found;
+  if (const auto centre = common_point(motions, length)) return {LoopKind::spherical, 3, Vector3::Zero(), *centre};
   return {};
 }
 

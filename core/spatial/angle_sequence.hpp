@@ -110,7 +110,7 @@ struct AngleSequence {
   }
 
   /// 1 / |sine (Euler) or cosine (Cardan) of the middle angle|: how much K enlarges an error of the angular velocity
-  /// (K-I-4.3.2, K-I-4.4.2). Infinite in gimbal lock.
+  /// (K-I-4.3.2, K-I-4.4.2). Without bound towards gimbal lock.
   template <typename T>
   static T condition(const Vector3T<T>& angles) {
     using std::abs;

@@ -81,9 +81,10 @@ struct AxisAngle {
  private:
   template <typename T>
   static Extracted<T, 4> of_tiny(const T& w, const Vector3T<T>& v, const Vector3T<T>& previous) {
+    using std::atan2;
     const auto p = polar<T>(v);
     Extracted<T, 4> result{{previous.x(), previous.y(), previous.z(), T(0)}, true};
-    if (p) result.coordinates << p->direction, T(2) * p->length / w;
+    if (p) result.coordinates << p->direction, T(2) * atan2(p->length, w);
     return result;
   }
 };

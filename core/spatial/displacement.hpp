@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "spatial/interpolation.hpp"
 #include "spatial/pose.hpp"
 #include "spatial/pose_exponential.hpp"
 #include "spatial/quaternion.hpp"
@@ -75,16 +76,10 @@ PoseT<T> pose_of_screw_displacement(const ScrewDisplacementT<T>& s) {
 }
 
 /// The pose on the way from A to B at a fraction of their screw displacement: 0 gives A, 1 B, others continue the
-/// motion. Points move on helices about one line, at a constant rate. Choosing another base frame changes nothing.
+/// motion. Points move on helices about one line, at a constant rate. Choosing another base frame changes nothing
+/// (K-I-6.4).
 template <typename T>
-struct InterpolatedPoseT {
-  PoseT<T> pose;
-  bool ambiguous;  ///< half a turn lies between A and B, to rounding: the other way round is as short
-};
-
-/// See InterpolatedPoseT (K-I-6.4).
-template <typename T>
-InterpolatedPoseT<T> interpolated(const PoseT<T>& x_a, const PoseT<T>& x_b, const T& fraction) {
+Interpolated<PoseT<T>> interpolated(const PoseT<T>& x_a, const PoseT<T>& x_b, const T& fraction) {
   const PoseT<T> x_ab = relative_pose<T>(x_a, x_b);
   const bool half_turn = quaternion_of_rotation<T>(x_ab.rotation)[0] <= rounding_floor<T>();
   return {x_a * pose_exp<T>(Vector6T<T>(fraction * pose_log<T>(x_ab))), half_turn};

@@ -5,10 +5,10 @@
 
 namespace koppel {
 
-/// A rotation on the way from one to another.
-template <typename Rotation>
+/// A rotation, or a pose, on the way from one to another.
+template <typename Value>
 struct Interpolated {
-  Rotation rotation;
+  Value value;
   bool ambiguous;  ///< half a turn lies between them, to rounding: the other way round is as short
 };
 
@@ -27,7 +27,7 @@ template <typename T>
 Interpolated<Matrix3T<T>> interpolated(const Matrix3T<T>& from, const Matrix3T<T>& to, const T& fraction) {
   const Vector4T<T> start = Vector4T<T>::Unit(0);
   const auto turn = interpolated<T>(start, quaternion_of_rotation<T>(from.transpose() * to), fraction);
-  return {from * rotation_of_quaternion<T>(turn.rotation), turn.ambiguous};
+  return {from * rotation_of_quaternion<T>(turn.value), turn.ambiguous};
 }
 
 }  // namespace koppel

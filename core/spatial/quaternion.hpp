@@ -82,7 +82,7 @@ inline int greatest_component(const Matrix3T<T>& r) {
   return greatest;
 }
 
-/// A quaternion of a rotation matrix, at least one and at most four units long, of either sign: four times its greatest
+/// A quaternion of a rotation matrix, two to four units long, of either sign: four times its greatest
 /// component, from the diagonal, times each of the components, so that no case is singular (K-I-4.5.3). For all that
 /// does not depend on a quaternion's length.
 template <typename T>

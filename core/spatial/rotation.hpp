@@ -69,7 +69,8 @@ template <typename T>
 struct NearestRotation {
   Matrix3T<T> rotation;
   T distance;      ///< Frobenius norm of what was changed
-  bool ambiguous;  ///< other rotations are as near, to rounding: the matrix has rank one or less, or mirrors
+  bool ambiguous;  ///< other rotations are as near, to rounding: the two least stretches, the last with its handedness,
+                   ///< cancel
 };
 
 /// The rotation nearest to M in the Frobenius norm: the orthogonal factor of its polar decomposition, its handedness

@@ -6,8 +6,7 @@
 //   of_quaternion(q)          coordinates of a unit quaternion, with a flag where they are not determined
 //   h_matrix(x, axes)         3 x m matrix H: angular velocity = H dx/dt, in base or in body axes
 //   k_matrix(x, axes)         m x 3 matrix K: dx/dt = K omega; K H = 1 on rates that are possible, H K = 1. Empty where
-//   it does
-//                             not exist
+//                             it does not exist
 //   rotation(x)               matrix R_base,body; optional, where there is a shorter way than by the quaternion
 //   of_rotation(r)            coordinates of a matrix, likewise
 //   twin(x)                   optional: the other coordinates of the same rotation
@@ -49,11 +48,7 @@ concept RotationCoordinates = requires(const Eigen::Matrix<double, C::size, 1>& 
 namespace constants {
 template <typename T>
 T pi() {
-  if constexpr (std::is_same_v<T, long double>) {
-    return std::numbers::pi_v<long double>;
-  } else {
-    return T(std::numbers::pi);
-  }
+  return constant<T>(std::numbers::pi_v<long double>);
 }
 }  // namespace constants
 

@@ -47,7 +47,7 @@ inline Vector3T<T> rotation_vector_of_rotation(const Matrix3T<T>& r) {
 }
 
 /// J_l: angular velocity = J_l(phi) d(phi)/dt in the axes from which phi turns; exp(phi + d) = exp(J_l d) exp(phi) to
-/// first order (K-I-4.2.4). Regular everywhere; of rank one at full turns.
+/// first order (K-I-4.2.4). Smooth everywhere; at full turns only its rank falls to one.
 template <typename T>
 inline Matrix3T<T> left_jacobian(const Vector3T<T>& phi) {
   const SincTerms<T> terms = sinc_terms<T>(phi.squaredNorm());

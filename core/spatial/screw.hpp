@@ -62,7 +62,7 @@ ScrewT<T> screw_of(const Vector3T<Dual<T>>& v, const T& length) {
   const auto size = polar<T>(real_part(v)), moment_size = polar<T>(moment);
   const T at_length = size ? T(size->length * length) : T(0), at_origin = moment_size ? moment_size->length : T(0);
   if (!moment_size && !size) return {};
-  if (!(at_length > rounding_floor<T>() * at_origin)) {
+  if (moment_size && !(at_length > rounding_floor<T>() * at_origin)) {
     return {ScrewKind::free_vector, {moment_size->direction, Vector3T<T>::Zero()}, Dual<T>(T(0), at_origin)};
   }
   // Across first, along second: no difference of large numbers.

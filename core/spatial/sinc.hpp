@@ -12,16 +12,6 @@ namespace koppel {
 
 namespace series {
 
-/// A constant in the precision of the scalar.
-template <typename T>
-T constant(long double value) {
-  if constexpr (requires { T{value}; }) {
-    return T{value};
-  } else {
-    return T(static_cast<double>(value));
-  }
-}
-
 /// Enough terms for s < 1: what is left out is below 1e-17, for wider types below 1e-24.
 template <typename T>
 inline constexpr int terms = std::is_same_v<T, double> ? 9 : 12;

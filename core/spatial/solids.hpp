@@ -24,7 +24,7 @@ SpatialInertiaT<T> solid_cylinder(const T& mass, const T& radius, const T& heigh
 /// Sphere of the mass [kg] and the radius [m].
 template <typename T>
 SpatialInertiaT<T> solid_sphere(const T& mass, const T& radius) {
-  return {mass, Vector3T<T>::Zero(), T(0.4) * mass * radius * radius * Matrix3T<T>::Identity()};
+  return {mass, Vector3T<T>::Zero(), T(2) / T(5) * mass * radius * radius * Matrix3T<T>::Identity()};
 }
 
 /// Rod without thickness, of the mass [kg] and the length [m], along z.

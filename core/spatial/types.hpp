@@ -34,6 +34,16 @@ T epsilon() {
   return Eigen::NumTraits<T>::epsilon();
 }
 
+/// A constant in the precision of the scalar.
+template <typename T>
+T constant(long double value) {
+  if constexpr (requires { T{value}; }) {
+    return T{value};
+  } else {
+    return T(static_cast<double>(value));
+  }
+}
+
 /// Below this part of the whole, nothing is left of a quantity but rounding: what depends on it is undetermined.
 template <typename T>
 T rounding_floor() {

@@ -136,7 +136,7 @@ class Explain(ProgramTest):
 
     def test_the_freedoms_of_a_scene_are_explained(self):
         text = self.expect(FINE, "koppel", "explain", self.write("scene.toml", FOURBAR)).stdout
-        self.assertIn("planar across (0, 0, 1), three equations", text)
+        self.assertIn("planar across (0, 0, 1), closed by 3 conditions", text)
         self.assertIn("rocker: moment about x y, force along z", text)
 
     def test_what_does_not_close_is_explained_without_freedoms(self):

@@ -110,7 +110,7 @@ class Arrays(Suspension):
     def test_freedoms_need_no_excuse(self):
         state = self.closed(0.0, 0.0)
         self.assertEqual(state.freedoms(), koppel.Freedoms(2, 2, 2, 0, 0, 0, 0, 0, 0, False))
-        self.assertIn("spatial, six equations", state.explain_freedoms())
+        self.assertIn("spatial, closed by 6 conditions", state.explain_freedoms())
 
     def test_a_start_is_taken_and_read_back(self):
         state, there = self.mechanism.state(), self.closed(0.04, 0.0)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -86,6 +87,7 @@ TEST(Freedoms, OfTheBooksMechanismsAreCountedRight) {
     EXPECT_EQ(f.mobility_here, known.here);
     EXPECT_EQ(f.mobility_nearby, known.here);
     EXPECT_EQ(f.redundant_here, static_cast<std::uint32_t>(3 * (known.planar + known.spherical)));
+    EXPECT_EQ(f.redundant_nearby, f.redundant_here);
     EXPECT_FALSE(f.shaky);
   }
 }
@@ -152,6 +154,23 @@ TEST(Freedoms, OfALinkBetweenTwoBallsIsItsSpin) {
   EXPECT_TRUE(held.freedoms.isolated.empty());
 }
 
+// Checks K-II-1.3.1b. Five links between ten balls: count 6, one of use and five spins.
+TEST(Freedoms, OfAFiveLinkSuspensionWithTenBallsAreOneAndFiveSpins) {
+  const std::string balls = replaced(shipped("multilink"), "\"universal\"", "\"spherical\"");
+  const Explained scene(std::regex_replace(balls, std::regex("axis2 = .*\n"), ""));
+  EXPECT_EQ(scene.freedoms.mobility_here, 2 + 5) << "travel and steering";
+  EXPECT_EQ(scene.freedoms.isolated.size(), 5u);
+  for (const IsolatedFreedom& freedom : scene.freedoms.isolated) EXPECT_EQ(freedom.axis.kind, MotionKind::rotation);
+}
+
+// A door on two hinges is held between the ground and the ground: it turns because it is meant to.
+TEST(Freedoms, OfADoorOnTwoHingesAreNotIsolated) {
+  const Explained scene(loop({"revolute", "revolute"}, {{0, 0, 0}, {0, 0, 1}}, {Vector3::UnitZ(), Vector3::UnitZ()}));
+  EXPECT_EQ(scene.freedoms.mobility_here, 1);
+  EXPECT_EQ(scene.freedoms.mobility_by_kind, 1);
+  EXPECT_TRUE(scene.freedoms.isolated.empty());
+}
+
 // The last link of an open chain moves alone, too, but that is what it is for.
 TEST(Freedoms, OfAnOpenChainAreNotIsolated) {
   const Explained scene(shipped("arm2"));
@@ -190,6 +209,25 @@ TEST(Freedoms, HaveThePoleOfTheFourBarForAScrewAxis) {
     // Nine digits are published.
     EXPECT_LE((axis.point().head<2>() - Eigen::Vector2d(0.347939080, 0.602648164)).norm(), 1e-9);
     EXPECT_NEAR(axis.rate, 0.208377411, 1e-9);
+  }
+}
+
+// In a plane that lies anywhere, rounding turns no rotation into a screw, and no translation into a turn far away.
+TEST(Freedoms, HaveScrewAxesWithoutRounding) {
+  Random random(4);
+  for (int n = 0; n < 20; ++n) {
+    const Pose x{random.rotation(), random.vector()};
+    // A parallelogram: its coupler moves without turning.
+    Closed scene(four_bar(x, {0, 0.1, 0.5, 0.4}, {0, 0.2, 0.2, 0}) +
+                 "[[drive]]\nof = 'j0.angle'\ntype = 'ramp'\nslope = 1\n");
+    ASSERT_GE(scene.move(0.0), 0);
+    Freedoms freedoms;
+    ASSERT_TRUE(find_freedoms(scene.work, scene.state, freedoms));
+    ASSERT_EQ(freedoms.axes.size(), 4u);
+    EXPECT_EQ(freedoms.axes[0].kind, MotionKind::rest);
+    EXPECT_EQ(freedoms.axes[1].kind, MotionKind::rotation);
+    EXPECT_EQ(freedoms.axes[2].kind, MotionKind::translation);
+    EXPECT_EQ(freedoms.axes[3].kind, MotionKind::rotation);
   }
 }
 
@@ -233,6 +271,16 @@ TEST(LoopKind, IsDecidedByTheAxesWithHalfTheDigits) {
     EXPECT_EQ(kind({turn(z, a), turn(z, b), turn(tilted, c)}), LoopKind::spatial);
     EXPECT_EQ(kind({turn(z, a), turn(z, b), slide(z)}), LoopKind::spatial);
     EXPECT_EQ(kind({slide(x), slide(y), slide(x - 2 * y)}), LoopKind::planar);
+    const auto conditions = [](const std::vector<Column>& motions) { return loop_kind(motions, 1.0).conditions; };
+    EXPECT_EQ(conditions({turn(z, a), turn(z, b), turn(z, c)}), 3);
+    EXPECT_EQ(conditions({slide(x), slide(y), slide(x - 2 * y)}), 2) << "a wedge";
+    EXPECT_EQ(conditions({slide(x), slide(y), slide(z), slide(x + y + z)}), 3);
+    EXPECT_EQ(conditions({slide(x), slide(-x)}), 1);
+    EXPECT_EQ(conditions({turn(z, a), turn(z, b), turn(z, c), slide(z)}), 4) << "a SCARA robot's motions";
+    EXPECT_EQ(conditions({turn(z, a), turn(z, a + 3 * z)}), 1) << "coaxial";
+    EXPECT_EQ(conditions({turn(z, a), slide(z), {z, 0.1 * z, a}}), 2) << "a screw drive";
+    EXPECT_EQ(conditions({turn(x, a), turn(y, a), turn(z, a)}), 3);
+    EXPECT_EQ(conditions({turn(x, a), turn(y, b), turn(z, c)}), 6);
     EXPECT_EQ(kind({slide(x), slide(y), slide(x + 1e-3 * z)}), LoopKind::spatial);
     EXPECT_EQ(kind({turn(x, a + x), turn(y, a), turn((x + z).normalized(), a)}), LoopKind::spherical);
     EXPECT_EQ(kind({turn(x, a), turn(y, a + 1e-3 * z), turn(z, a)}), LoopKind::spatial);

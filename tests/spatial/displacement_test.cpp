@@ -321,10 +321,10 @@ TEST(InterpolatedPose, MovesOnAHelix) {
           known.point + s * known.angle.dual * known.axis + known.axis.dot(r) * known.axis + turn * across;
       // The axis is determined as the sine of half the angle allows.
       const double sine = std::sin(known.angle.real / 2);
-      EXPECT_LE((found.pose * p - a * helix).norm(), 128 * eps / sine) << s;
+      EXPECT_LE((found.value * p - a * helix).norm(), 128 * eps / sine) << s;
     }
-    EXPECT_LE(apart(interpolated(a, b, 0.0).pose, a), 8 * eps);
-    EXPECT_LE(apart(interpolated(a, b, 1.0).pose, b), 64 * eps);
+    EXPECT_LE(apart(interpolated(a, b, 0.0).value, a), 8 * eps);
+    EXPECT_LE(apart(interpolated(a, b, 1.0).value, b), 64 * eps);
   }
 }
 
@@ -336,7 +336,7 @@ TEST(InterpolatedPose, HasAConstantVelocityScrew) {
     const Known known(random);
     const Pose b = a * known.pose;
     const auto moving = [](const Pose& x) { return PoseT<D>{x.rotation.cast<D>(), x.position.cast<D>()}; };
-    const auto x = interpolated<D>(moving(a), moving(b), D(random.between(0, 1), 1)).pose;
+    const auto x = interpolated<D>(moving(a), moving(b), D(random.between(0, 1), 1)).value;
     const Vector3 omega = axial(dual_part(x.rotation) * real_part(x.rotation).transpose());
     const Vector3 v = dual_part(x.position) - omega.cross(real_part(x.position));
     const DualVector expected = transform_screw<double>(a, known.line * known.angle);
@@ -351,23 +351,23 @@ TEST(InterpolatedPose, IsRegularForTranslations) {
     for (const double way : {1e-160, 1.0, 1e6, 1e150}) {
       const Vector3 u = random.direction(), t = way * random.direction();
       const Pose b{rotation_of_rotation_vector<double>(angle * u), t};
-      const auto middle = interpolated<double>({}, b, 0.5).pose;
+      const auto middle = interpolated<double>({}, b, 0.5).value;
       // The chord is half the way, less a sagitta of angle / 8 of it.
       EXPECT_LE((middle.position - t / 2).norm() / way, angle / 4 + 8 * eps);
       EXPECT_LE((axial(middle.rotation) - angle / 2 * u).norm(), 8 * eps * angle);
       EXPECT_LE(apart(middle * relative_pose(middle, b), b) / std::max(1.0, way), 8 * eps);
-      EXPECT_LE((interpolated<double>({}, b, 1.0).pose.position - t).norm() / way, 16 * eps);
+      EXPECT_LE((interpolated<double>(Pose{}, b, 1.0).value.position - t).norm() / way, 16 * eps);
     }
   }
-  EXPECT_EQ(apart(interpolated<double>({}, {}, 0.3).pose, {}), 0);
+  EXPECT_EQ(apart(interpolated<double>(Pose{}, Pose{}, 0.3).value, {}), 0);
 }
 
 // Checks K-I-6.4.
 TEST(InterpolatedPose, TellsWhereBothWaysAreAsShort) {
   const Vector3 z = Vector3::UnitZ();
-  EXPECT_TRUE(interpolated<double>({}, {rotation_about<double>(z, pi), z}, 0.5).ambiguous);
-  EXPECT_FALSE(interpolated<double>({}, {rotation_about<double>(z, pi - 1e-12), z}, 0.5).ambiguous);
-  EXPECT_FALSE(interpolated<double>({}, {Matrix3::Identity(), z}, 0.5).ambiguous);
+  EXPECT_TRUE(interpolated<double>(Pose{}, Pose{rotation_about<double>(z, pi), z}, 0.5).ambiguous);
+  EXPECT_FALSE(interpolated<double>(Pose{}, Pose{rotation_about<double>(z, pi - 1e-12), z}, 0.5).ambiguous);
+  EXPECT_FALSE(interpolated<double>(Pose{}, Pose{Matrix3::Identity(), z}, 0.5).ambiguous);
 }
 
 // Checks K-I-6.4. Another base changes nothing.
@@ -377,7 +377,7 @@ TEST(InterpolatedPose, DoesNotDependOnTheBase) {
     const Pose y = random_pose(random), a = random_pose(random), b = random_pose(random);
     // Half a turn would let rounding choose the way.
     if (quaternion_of_rotation<double>(relative_pose(a, b).rotation)[0] < 1e-6) continue;
-    EXPECT_LE(apart(interpolated<double>(y * a, y * b, 0.3).pose, y * interpolated(a, b, 0.3).pose), 128 * eps);
+    EXPECT_LE(apart(interpolated<double>(y * a, y * b, 0.3).value, y * interpolated(a, b, 0.3).value), 128 * eps);
   }
 }
 

@@ -21,10 +21,10 @@ TEST(Interpolation, StartsAtOneEndsAtTheOtherAndTurnsEvenly) {
   for (int n = 0; n < 1000; ++n) {
     const Matrix3 a = random.rotation(), b = random.rotation();
     const double whole = angle_of(a.transpose() * b);
-    EXPECT_LE((interpolated<double>(a, b, 0).rotation - a).cwiseAbs().maxCoeff(), 8 * eps);
-    EXPECT_LE((interpolated<double>(a, b, 1).rotation - b).cwiseAbs().maxCoeff(), 16 * eps);
+    EXPECT_LE((interpolated<double>(a, b, 0).value - a).cwiseAbs().maxCoeff(), 8 * eps);
+    EXPECT_LE((interpolated<double>(a, b, 1).value - b).cwiseAbs().maxCoeff(), 16 * eps);
     for (const double fraction : {0.1, 0.5, 0.9}) {
-      const Matrix3 between = interpolated<double>(a, b, fraction).rotation;
+      const Matrix3 between = interpolated<double>(a, b, fraction).value;
       EXPECT_NEAR(angle_of(a.transpose() * between), fraction * whole, 16 * eps);
       EXPECT_NEAR(angle_of(between.transpose() * b), (1 - fraction) * whole, 16 * eps);
     }
@@ -38,19 +38,18 @@ TEST(Interpolation, IsTheSameForMatricesAndQuaternionsAndInEveryBase) {
     const double fraction = random.between(-1, 2);
     const Matrix3 base = random.rotation(), ra = rotation_of_quaternion<double>(a),
                   rb = rotation_of_quaternion<double>(b);
-    const Matrix3 found = interpolated<double>(ra, rb, fraction).rotation;
+    const Matrix3 found = interpolated<double>(ra, rb, fraction).value;
     // Beyond the ends the turn is up to twice as long, and so is its error.
     EXPECT_LE(
-        (rotation_of_quaternion<double>(interpolated<double>(a, b, fraction).rotation) - found).cwiseAbs().maxCoeff(),
+        (rotation_of_quaternion<double>(interpolated<double>(a, b, fraction).value) - found).cwiseAbs().maxCoeff(),
         32 * eps);
-    EXPECT_LE((interpolated<double>(Matrix3(base * ra), Matrix3(base * rb), fraction).rotation - base * found)
+    EXPECT_LE((interpolated<double>(Matrix3(base * ra), Matrix3(base * rb), fraction).value - base * found)
                   .cwiseAbs()
                   .maxCoeff(),
               48 * eps);
     // q and -q are one rotation: the way is never the long one round.
-    EXPECT_LE(
-        std::abs(interpolated<double>(a, Vector4(-b), 0.5).rotation.dot(interpolated<double>(a, b, 0.5).rotation) - 1),
-        16 * eps);
+    EXPECT_LE(std::abs(interpolated<double>(a, Vector4(-b), 0.5).value.dot(interpolated<double>(a, b, 0.5).value) - 1),
+              16 * eps);
   }
 }
 
@@ -65,7 +64,7 @@ TEST(Interpolation, SaysWhenTheOtherWayIsAsShort) {
 TEST(Interpolation, OfTwoThatAreTheSameIsThat) {
   Random random(3);
   const Vector4 q = random.quaternion();
-  EXPECT_LE((interpolated<double>(q, q, 0.7).rotation - q).norm(), 4 * eps);
+  EXPECT_LE((interpolated<double>(q, q, 0.7).value - q).norm(), 4 * eps);
 }
 
 }  // namespace

@@ -279,9 +279,9 @@ KOPPEL_EXPORT koppel_status koppel_analyse(const koppel_state* state, koppel_wor
 /* The freedoms at the present position, inputs taken for free, and why counting them gives what it gives. */
 typedef struct koppel_freedoms {
   uint32_t struct_size;
-  int32_t mobility_by_kind; /* Gruebler, with three equations for planar and spherical loops */
+  int32_t mobility_by_kind; /* Gruebler, with the conditions that each loop needs by its kind */
   int32_t mobility_here;    /* by rank */
-  int32_t mobility_nearby;  /* by rank at closed positions near by: less in a singular position */
+  int32_t mobility_nearby;  /* by rank at closed positions near by, if any: less in a singular one */
   uint32_t redundant_here;  /* equations that follow from the others */
   uint32_t redundant_nearby;
   uint32_t planar_loops;

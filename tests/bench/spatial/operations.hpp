@@ -116,12 +116,12 @@ void list_operations(Table& table) {
   table.template add<Pose>("pose_adjoint", [](const auto& x) { return adjoint<T>(x); });
 
   table.template add<Quaternion, Quaternion>(
-      "quaternion_interpolation", [](const auto& a, const auto& b) { return interpolated<T>(a, b, T(0.25)).rotation; });
+      "quaternion_interpolation", [](const auto& a, const auto& b) { return interpolated<T>(a, b, T(0.25)).value; });
   table.template add<Matrix3, Matrix3>(
-      "matrix_interpolation", [](const auto& a, const auto& b) { return interpolated<T>(a, b, T(0.25)).rotation; });
+      "matrix_interpolation", [](const auto& a, const auto& b) { return interpolated<T>(a, b, T(0.25)).value; });
 
   table.template add<Pose, Pose>("pose_interpolation",
-                                 [](const auto& a, const auto& b) { return interpolated<T>(a, b, T(0.25)).pose; });
+                                 [](const auto& a, const auto& b) { return interpolated<T>(a, b, T(0.25)).value; });
   table.template add<Pose>("pose_to_dual_quaternion", [](const auto& x) { return dual_quaternion_of_pose<T>(x); });
   table.template add<DualQuaternion>("dual_quaternion_to_pose",
                                      [](const auto& q) { return pose_of_dual_quaternion<T>(q); });

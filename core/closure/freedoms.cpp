@@ -153,8 +153,8 @@ std::vector<std::size_t> neighbours(const Mechanism& mechanism) {
   for (const Relation& relation : mechanism.relations) {
     if (relation.kind == RelationKind::constraint && relation.has_frames) join(relation.node_a, relation.node_b);
   }
-  std::vector<std::size_t> count;
-  for (const auto& bodies : others) count.push_back(bodies.size());
+  std::vector<std::size_t> count(others.size());
+  std::transform(others.begin(), others.end(), count.begin(), [](const auto& bodies) { return bodies.size(); });
   return count;
 }
 

@@ -4,9 +4,9 @@ namespace koppel::app {
 
 AtStart at_start(const Model& model) {
   AtStart result;
-  const Motion motion = start(model);
-  koppel_state* state = motion.state.get();
-  koppel_work* work = motion.work.get();
+  result.motion = start(model);
+  koppel_state* state = result.motion.state.get();
+  koppel_work* work = result.motion.work.get();
   koppel_status& status = result.status;
   status = koppel_state_set_time(state, 0.0, &result.error);
   if (status >= 0) status = koppel_close(state, work, nullptr, &result.report, &result.error);
@@ -17,8 +17,6 @@ AtStart at_start(const Model& model) {
   auto analysis = sized<koppel_analysis>();
   const koppel_status analysed = koppel_analyse(state, work, &analysis, status >= 0 ? &result.error : nullptr);
   if (analysed >= 0) result.analysis = analysis;
-  auto freedoms = sized<koppel_freedoms>();
-  if (result.closed && koppel_find_freedoms(state, work, &freedoms, nullptr) >= 0) result.freedoms = freedoms;
   if (status >= 0 && analysed < 0) status = analysed;
   return result;
 }

@@ -8,11 +8,11 @@
 namespace koppel::app {
 
 struct AtStart {
+  Motion motion;                     ///< the state that the rest tells of
   koppel_status status = KOPPEL_OK;  ///< of the first call that failed
   koppel_error error = sized<koppel_error>();
   koppel_report report = sized<koppel_report>();
   bool closed = false;                      ///< true also where the rates that the inputs ask for are impossible
-  std::optional<koppel_freedoms> freedoms;  ///< of the closed position
   std::optional<koppel_analysis> analysis;  ///< of the closed position, or of the start values if none was found
 };
 

@@ -47,6 +47,13 @@ void print_mobility(const koppel_analysis& analysis, const std::optional<koppel_
   }
 }
 
+std::optional<koppel_freedoms> freedoms_of(const AtStart& start) {
+  auto freedoms = sized<koppel_freedoms>();
+  const Motion& motion = start.motion;
+  if (!start.closed || koppel_find_freedoms(motion.state.get(), motion.work.get(), &freedoms, nullptr) < 0) return {};
+  return freedoms;
+}
+
 void print_text(const Model& model, const AtStart& start) {
   const koppel_sizes sizes = model.sizes();
   const std::string title = model.name(KOPPEL_KIND_SCENE, 1);
@@ -54,7 +61,7 @@ void print_text(const Model& model, const AtStart& start) {
   std::printf("elements    %u bodies with the ground, %u joints, %u constraints, %u inputs, %u recorded columns\n",
               sizes.bodies, sizes.joints, sizes.constraints, sizes.inputs, sizes.records);
   std::printf("loops       %u, with %u equations for %u unknown rates\n", sizes.loops, sizes.equations, sizes.unknowns);
-  if (start.analysis) print_mobility(*start.analysis, start.freedoms);
+  if (start.analysis) print_mobility(*start.analysis, freedoms_of(start));
   if (start.closed) {
     std::printf("at t = 0    closed: residual %.1e, coordinates within %.1e, %u iterations, condition %.3g\n",
                 start.report.residual, start.report.coordinate_error, start.report.iterations, start.report.condition);
@@ -84,12 +91,11 @@ void add_start(nlohmann::ordered_json& document, const Model& model, const AtSta
   document["unknowns"] = sizes.unknowns;
   add_counts(document, sizes, start.analysis);
   document["freedoms"] = nullptr;
-  if (start.freedoms) {
-    const koppel_freedoms& freedoms = *start.freedoms;
-    document["freedoms"] = {{"by_kind", freedoms.mobility_by_kind},  {"nearby", freedoms.mobility_nearby},
-                            {"planar_loops", freedoms.planar_loops}, {"spherical_loops", freedoms.spherical_loops},
-                            {"isolated", freedoms.isolated},         {"indeterminate", freedoms.indeterminate},
-                            {"shaky", freedoms.shaky != 0}};
+  if (const auto freedoms = freedoms_of(start)) {
+    document["freedoms"] = {{"by_kind", freedoms->mobility_by_kind},  {"nearby", freedoms->mobility_nearby},
+                            {"planar_loops", freedoms->planar_loops}, {"spherical_loops", freedoms->spherical_loops},
+                            {"isolated", freedoms->isolated},         {"indeterminate", freedoms->indeterminate},
+                            {"shaky", freedoms->shaky != 0}};
   }
   if (start.closed) {
     document["residual"] = start.report.residual;

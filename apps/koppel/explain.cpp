@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "koppel/at_start.hpp"
 #include "koppel/command.hpp"
 
 namespace koppel::app {
@@ -43,17 +44,13 @@ Exit explain_scene(const std::string& file, bool verbose) {
     return koppel_mechanism_explain(model.mechanism.get(), buffer, size, needed);
   });
   std::fputs(text.c_str(), stdout);
-  const Motion motion = start(model);
-  koppel_state* state = motion.state.get();
-  koppel_work* work = motion.work.get();
-  if (koppel_state_set_time(state, 0.0, nullptr) < 0 || koppel_close(state, work, nullptr, nullptr, nullptr) < 0) {
+  const AtStart start = at_start(model);
+  if (!start.closed) {
     std::puts("\nFreedoms: not known, the mechanism does not close at t = 0; koppel check tells more");
     return Exit::fine;
   }
-  // Screw axes are told where there are velocities.
-  koppel_velocities(state, work, nullptr);
   const std::string freedoms = text_of([&](char* buffer, std::size_t size, std::size_t* needed) {
-    return koppel_explain_freedoms(state, work, buffer, size, needed);
+    return koppel_explain_freedoms(start.motion.state.get(), start.motion.work.get(), buffer, size, needed);
   });
   std::printf("\nAt t = 0\n%s", freedoms.c_str());
   return Exit::fine;

@@ -15,8 +15,8 @@ namespace koppel {
 /// rotation.
 ///
 /// Singular where first and third axis fall together (gimbal lock): middle angle 0 or pi for Euler, +-pi/2 for Cardan
-/// angles. There only the sum or difference of the two outer angles is determined: the third is 0, if nothing is left
-/// of it.
+/// angles. There only the sum or difference of the two outer angles is determined; where rounding leaves no more than
+/// that, the third is 0.
 template <int i, int j, int k>
 struct AngleSequence {
   static_assert(i != j && j != k, "two successive turns about one axis are one turn");

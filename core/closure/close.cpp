@@ -50,28 +50,19 @@ class Restorer {
   bool kept_ = false;
 };
 
-/// Jacobian and factorisation where the equations stand.
-void factorise_here(Work& work, const Eigen::VectorXd& q, double time) {
-  work.equations.evaluate_jacobian();
-  work.factorisation.compute(work.equations.jacobian.leftCols(work.mechanism->unknowns));
-  work.factorised = true;
-  work.factorised_at = q;
-  work.factorised_time = time;
-}
-
-/// The same at a given position, unless all of it is there already.
+/// Jacobian and factorisation at a position, unless all of it is there already.
 bool factorise_at(Work& work, const Eigen::VectorXd& q, double time) {
   if (work.factorised && work.factorised_at == q && work.factorised_time == time) return true;
   work.factorised = false;
   if (!work.equations.evaluate(q, time)) return false;
-  factorise_here(work, q, time);
+  work.factorise(q, time);
   return true;
 }
 
 /// Report and remarks for the closed position where work is factorised.
 koppel_status describe(Work& work, Report& report) {
   const Mechanism& mechanism = *work.mechanism;
-  const Factorisation::Condition condition = work.factorisation.condition();
+  const Factorisation::Condition condition = work.condition;
   report.verdict = mechanism.relations.empty() ? Verdict::open : Verdict::closed;
   report.residual = work.equations.error();
   report.rank = static_cast<std::uint32_t>(work.factorisation.rank());
@@ -83,9 +74,12 @@ koppel_status describe(Work& work, Report& report) {
   }
   const double uncertain = work.equations.residual.norm() + 8.0 * reach * std::numeric_limits<double>::epsilon();
   report.coordinate_error = condition.smallest > 0.0 ? uncertain / condition.smallest : 0.0;
+  // Beside a change point the branch tells where it is.
+  if (work.branch_rates) report.coordinate_error = std::min(report.coordinate_error, 100.0 * uncertain);
   koppel_status status = KOPPEL_OK;
   if (report.rank < mechanism.rows) status |= KOPPEL_REDUNDANT;
-  if (report.condition > near_singular) status |= KOPPEL_NEAR_SINGULAR;
+  if (report.condition > near_singular || work.branch_rates) status |= KOPPEL_NEAR_SINGULAR;
+  if (report.change_points > 0) status |= KOPPEL_CHANGE_POINT;
   if (any_limit_exceeded(mechanism, work.factorised_at)) status |= KOPPEL_LIMIT_EXCEEDED;
   return status;
 }
@@ -142,6 +136,7 @@ bool is_closed(const Mechanism& mechanism, const State& state) {
 koppel_status close(Work& work, State& state, const CloseOptions& options, Report& report) {
   const Mechanism& mechanism = *work.mechanism;
   report = Report{};
+  work.branch_rates.reset();
   const bool tracking = state.stage != Stage::assigned;
   if (tracking && inputs_taken(mechanism, state)) {
     if (!factorise_at(work, state.q, state.time)) return KOPPEL_PLUGIN;
@@ -159,13 +154,20 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
   if (!closed) {
     report.residual = closing.nearest();
     report.open_row = closing.nearest_row();
+    if (report.verdict == Verdict::limit) return KOPPEL_NOT_CLOSED;
     report.verdict = tracking && options.method == Method::newton ? Verdict::retry : Verdict::not_found;
     return report.verdict == Verdict::retry ? KOPPEL_RETRY : KOPPEL_NOT_CLOSED;
   }
   if (!work.equations.cut_coordinates(work.q)) return KOPPEL_PLUGIN;
-  factorise_here(work, work.q, state.time);
+  if (work.factorised) {
+    work.factorised_at = work.q;  // but for the cut joints they were there already
+  } else {
+    work.factorise(work.q, state.time);
+  }
   const koppel_status status = describe(work, report);
   remember(state);
+  state.history.rank = report.rank;
+  state.history.weakest = work.condition.smallest;
   state.q = work.q;
   state.stage = Stage::closed;
   return closing.branch_changed() ? status | KOPPEL_BRANCH_CHANGED : status;
@@ -218,7 +220,7 @@ koppel_status accelerations(Work& work, State& state) {
   return KOPPEL_OK;
 }
 
-koppel_status move(Work& work, State& state, double time, Report& report) {
+koppel_status move(Work& work, State& state, double time, Report& report, Branch branch) {
   report = Report{};
   work.saved = state;
   Restorer restorer(state, work.saved);
@@ -226,8 +228,17 @@ koppel_status move(Work& work, State& state, double time, Report& report) {
     work.equations.blame(*failed);
     return KOPPEL_PLUGIN;
   }
-  const koppel_status closed = close(work, state, {}, report);
+  CloseOptions options;
+  options.branch = branch;
+  const koppel_status closed = close(work, state, options, report);
   if (closed < 0) return closed;
+  if (work.branch_rates) {
+    state.v = work.branch_rates->v;
+    state.a = work.branch_rates->a;
+    state.stage = Stage::accelerations;
+    restorer.keep();
+    return closed;
+  }
   for (const auto step : {velocities, accelerations}) {
     const koppel_status status = step(work, state);
     if (status < 0) return status;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "closure/branch.hpp"
 #include "closure/report.hpp"
 #include "closure/work.hpp"
 #include "koppel/plugin.h"
@@ -16,12 +17,15 @@ struct CloseOptions {
   Method method = Method::automatic;
   std::uint32_t max_iterations = 0;  ///< 0: 50 for Newton, 500 for Ceres
   double tolerance = 0.0;            ///< 0: down to rounding
+  Branch branch = Branch::stay;
 };
 
 /// Closes the loops with the inputs held at the state's values. A state that was closed before is followed from there,
-/// in smaller steps of the inputs if need be; another is assembled: by Newton if it is near, by Ceres from further
-/// away, last by letting the inputs go, closing, and leading them back. Status: as koppel_status; KOPPEL_NOT_CLOSED,
-/// KOPPEL_RETRY and KOPPEL_PLUGIN leave the state untouched.
+/// in smaller steps of the inputs if need be, and along its curve of closed positions where these are singular: past
+/// change points on the branch that is asked for (KOPPEL_CHANGE_POINT), up to a limit (KOPPEL_NOT_CLOSED, the report
+/// tells it). Another is assembled: by Newton if it is near, by Ceres from further away, last by letting the inputs go,
+/// closing, and leading them back. Status: as koppel_status; KOPPEL_NOT_CLOSED, KOPPEL_RETRY and KOPPEL_PLUGIN leave
+/// the state untouched.
 koppel_status close(Work& work, State& state, const CloseOptions& options, Report& report);
 
 /// Whether the loops are closed at the state's position and time; its inputs may ask for another position by now.
@@ -35,7 +39,7 @@ koppel_status velocities(Work& work, State& state);
 koppel_status accelerations(Work& work, State& state);
 
 /// To another time: inputs, closure, velocities, accelerations; on failure the state is as before.
-koppel_status move(Work& work, State& state, double time, Report& report);
+koppel_status move(Work& work, State& state, double time, Report& report, Branch branch = Branch::stay);
 
 /// Forward kinematics at the state, with its rates and accelerations; results are in work.equations.kinematics.
 bool realise(Work& work, const State& state);

@@ -4,11 +4,14 @@
 #include <cmath>
 
 #include "closure/ceres_closure.hpp"
+#include "closure/passage.hpp"
 
 namespace koppel {
 namespace {
 
-constexpr double largest_move = 0.35;  // of any unknown in one step that is believed without looking closer
+constexpr double largest_move = 0.35;    // of any unknown in one step that is believed without looking closer
+constexpr double surely_nearest = 0.25;  // correction over singular value: branches are further apart than that
+constexpr double well_conditioned = 1e3;
 constexpr double smallest_fraction = 1.0 / 4096.0;
 constexpr std::uint32_t default_ceres_iterations = 500;
 
@@ -23,10 +26,18 @@ Closing::Closing(Work& work, const State& state, const CloseOptions& options, Re
 
 bool Closing::follow() {
   predict();
-  if (options_.method != Method::ceres && try_newton() && moved_little()) return true;
+  if (options_.method != Method::ceres && try_newton() && moved_little()) {
+    if (options_.method == Method::newton || believed(distance(work_.q_start), distance(state_.q))) return true;
+  }
   if (plugin_failed_) return false;
-  if (options_.method == Method::automatic && lead(state_.q)) return true;
+  double weakest = state_.history.weakest;
+  if (options_.method == Method::automatic && lead(state_.q, &weakest)) return true;
   if (plugin_failed_ || options_.method == Method::newton) return false;
+  if (options_.method == Method::automatic) {
+    const PassageEnd end = pass(work_, state_, options_.branch, report_);
+    plugin_failed_ = end == PassageEnd::plugin_failed;
+    if (end != PassageEnd::lost) return end == PassageEnd::arrived;
+  }
   work_.q = state_.q;
   set_inputs(1.0);
   if (!try_ceres()) return false;
@@ -122,13 +133,48 @@ double Closing::greatest_unknown(const Eigen::VectorXd& delta) const {
   return result;
 }
 
-bool Closing::moved_little() {
-  difference(mechanism_, work_.q_start, work_.q, work_.delta);
-  return greatest_unknown(work_.delta) <= largest_move;
+/// Of work.q from a position.
+double Closing::distance(const Eigen::VectorXd& from) {
+  difference(mechanism_, from, work_.q, work_.delta);
+  return greatest_unknown(work_.delta);
 }
 
-/// Leads the inputs from a closed position to their targets, in steps that halve when they are not believed.
-bool Closing::lead(const Eigen::VectorXd& from) {
+bool Closing::moved_little() { return distance(work_.q_start) <= largest_move; }
+
+/// Whether the closed position work.q is surely that of the branch: another branch is as far away as the smallest
+/// singular value says, and it has not gone through zero on the way.
+bool Closing::believed(double correction, double motion) {
+  work_.factorise(work_.q, state_.time);
+  const Factorisation::Condition& condition = work_.condition;
+  if (work_.factorisation.rank() != state_.history.rank) return false;
+  if (work_.factorisation.rank() == 0) return true;
+  if (condition.ratio > well_conditioned || correction > surely_nearest * condition.smallest) return false;
+  return motion <= condition.smallest || same_orientation();
+}
+
+/// Whether the Jacobian of the unknowns keeps its orientation from the state to work.q: then no singular value (or an
+/// even number of them) has gone through zero. For redundant equations too: their space turns but little.
+bool Closing::same_orientation() {
+  const auto unknowns = static_cast<Eigen::Index>(mechanism_.unknowns);
+  if (work_.factorisation.rank() < unknowns) return false;
+  Equations& equations = work_.equations;
+  work_.factorised = false;
+  if (!equations.evaluate(state_.q, state_.history.time)) return false;
+  equations.evaluate_jacobian();
+  work_.jacobian_before = equations.jacobian.leftCols(unknowns);
+  if (!equations.evaluate(work_.q, state_.time)) return false;
+  equations.evaluate_jacobian();
+  work_.factorised = true;
+  work_.turned.noalias() = work_.jacobian_before.transpose() * equations.jacobian.leftCols(unknowns);
+  work_.turned_factors.compute(work_.turned);
+  double sign = static_cast<double>(work_.turned_factors.permutationP().determinant());
+  for (Eigen::Index i = 0; i < unknowns; ++i) sign = work_.turned_factors.matrixLU()(i, i) < 0.0 ? -sign : sign;
+  return sign > 0.0;
+}
+
+/// Leads the inputs from a closed position to their targets, in steps that halve when they are not believed. weakest:
+/// singular value at that position; null: any closed position will do.
+bool Closing::lead(const Eigen::VectorXd& from, double* weakest) {
   Eigen::VectorXd& here = work_.q_start;
   if (&from != &here) here = from;
   double done = 0.0, fraction = 1.0;
@@ -137,7 +183,14 @@ bool Closing::lead(const Eigen::VectorXd& from) {
     const double next = std::min(left, fraction);
     work_.q = here;
     set_inputs(next >= left ? 1.0 : next / left);
-    if (try_newton() && moved_little()) {
+    const auto sure = [&] {
+      if (weakest == nullptr) return true;
+      const double moved = distance(here);
+      if (moved > surely_nearest * *weakest || !believed(moved, moved)) return false;
+      *weakest = work_.condition.smallest;
+      return true;
+    };
+    if (try_newton() && moved_little() && sure()) {
       here = work_.q;
       done = next >= left ? 1.0 : done + next;
       fraction = std::min(1.0, 2.0 * next);

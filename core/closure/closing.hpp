@@ -18,7 +18,8 @@ class Closing {
   Closing(Work& work, const State& state, const CloseOptions& options, Report& report);
 
   /// From the state's q, which was closed for other inputs: extrapolates, and leads the inputs in smaller steps if that
-  /// is not enough; falls back on Ceres.
+  /// is not enough; follows the curve where that is not sure of its branch; falls back on Ceres. The report's verdict
+  /// tells of a limit.
   bool follow();
   /// From any q: Newton if it is near, Ceres from further away; last lets the inputs go, closes, and leads them back.
   bool assemble();
@@ -39,7 +40,10 @@ class Closing {
   void predict();
   bool moved_little();
   double greatest_unknown(const Eigen::VectorXd& delta) const;
-  bool lead(const Eigen::VectorXd& from);
+  bool lead(const Eigen::VectorXd& from, double* weakest = nullptr);
+  bool believed(double correction, double motion);
+  bool same_orientation();
+  double distance(const Eigen::VectorXd& from);
 
   Work& work_;
   const Mechanism& mechanism_;

@@ -5,7 +5,7 @@
 
 namespace koppel {
 
-enum class Verdict { open, closed, not_found, retry };
+enum class Verdict { open, closed, not_found, retry, limit };
 enum class SolverUsed { none, newton, ceres };
 
 struct Report {
@@ -17,6 +17,12 @@ struct Report {
   std::uint32_t open_row = 0;            ///< of a failure: the equation that stayed open most there
   double condition = 1.0;                ///< ratio of extreme singular values that count, estimated
   double coordinate_error = 0.0;         ///< estimated greatest error of an unknown, in radians' size
+  std::uint32_t change_points = 0;       ///< that were passed
+  double change_point_time = 0.0;        ///< of the last of them
+  std::int32_t limit_input = -1;         ///< of the verdict limit: the input that goes no further
+  double limit_time = 0.0;               ///< when the drives reach it
+  double limit_value = 0.0;              ///< of the input
+  std::int32_t drive_instead = -1;       ///< the coordinate that moves most there, in q
 };
 
 }  // namespace koppel

@@ -7,14 +7,10 @@
 
 #include <Eigen/Core>
 
+#include "closure/branch.hpp"
 #include "closure/stretch.hpp"
 
 namespace koppel {
-
-enum class Branch {
-  stay,  ///< past a change point the motion goes on as it came
-  take   ///< past a change point it takes the other branch
-};
 
 enum class SingularKind { limit, change_point };
 

@@ -16,10 +16,22 @@ Work::Work(std::shared_ptr<const Mechanism> m)
       rhs_copy(mechanism->rows),
       step(mechanism->columns),
       rest(Eigen::VectorXd::Zero(mechanism->nv)),
+      jacobian_before(mechanism->rows, mechanism->unknowns),
+      turned(mechanism->unknowns, mechanism->unknowns),
+      turned_factors(mechanism->unknowns),
       saved(*mechanism) {
   factorised_at.resize(mechanism->nq);
 }
 
 Work::~Work() = default;
+
+void Work::factorise(const Eigen::VectorXd& at, double time) {
+  equations.evaluate_jacobian();
+  factorisation.compute(equations.jacobian.leftCols(mechanism->unknowns));
+  condition = factorisation.condition();
+  factorised = true;
+  factorised_at = at;
+  factorised_time = time;
+}
 
 }  // namespace koppel

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 #include "closure/equations.hpp"
 #include "closure/factorisation.hpp"
@@ -13,6 +14,11 @@
 namespace koppel {
 
 class CeresClosure;
+
+/// Rates at a position where not the equations but only the branch tells them.
+struct BranchRates {
+  Eigen::VectorXd v, a;  ///< nv
+};
 
 struct Work {
   explicit Work(std::shared_ptr<const Mechanism> mechanism);
@@ -26,14 +32,22 @@ struct Work {
   bool factorised = false;        ///< equations stand, and `factorisation` holds, at the position below
   Eigen::VectorXd factorised_at;  ///< nq
   double factorised_time = 0.0;
+  Factorisation::Condition condition;  ///< there
 
   Eigen::VectorXd q, q_trial, q_start;  ///< nq
   Eigen::VectorXd delta;                ///< nv
   Eigen::VectorXd rhs, rhs_copy;        ///< rows
   Eigen::VectorXd step;                 ///< columns
   Eigen::VectorXd rest;                 ///< nv zeros
-  State saved;                          ///< what a failed move goes back to
+  Eigen::MatrixXd jacobian_before;      ///< rows x unknowns
+  Eigen::MatrixXd turned;               ///< unknowns x unknowns
+  Eigen::PartialPivLU<Eigen::MatrixXd> turned_factors;
+  State saved;  ///< what a failed move goes back to
 
+  /// Jacobian and factorisation where the equations stand, which is at q.
+  void factorise(const Eigen::VectorXd& at, double time);
+
+  std::unique_ptr<BranchRates> branch_rates;   ///< of the last closure, if it ended beside a change point
   std::unique_ptr<CeresClosure> ceres;         ///< built on first need
   std::unique_ptr<Factorisation> all_columns;  ///< when the inputs are free too; built on first need
 };

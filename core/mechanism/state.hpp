@@ -27,6 +27,8 @@ struct State {
     double time = 0.0;             ///< of the position in q
     double step = 0.0;             ///< from the one before; 0: there is none
     Eigen::VectorXd acceleration;  ///< nv, of the one before
+    std::uint32_t rank = 0;        ///< of the closure's equations in the unknowns at the position in q
+    double weakest = 0.0;          ///< singular value there that counts
   } history;
 };
 

@@ -5,8 +5,8 @@
 #include <Eigen/SVD>
 #include <gtest/gtest.h>
 
-#include "closed.hpp"
 #include "closure/walk.hpp"
+#include "four_bar.hpp"
 
 namespace koppel::test {
 namespace {
@@ -46,33 +46,6 @@ struct Walking {
   Closed closed;
   std::optional<Curve> curve;
 };
-
-std::string long_crank(const std::string& start, const std::string& rocker, const std::string& slope) {
-  return shipped("rstr", {{"crank = 0.10", "crank = 0.30"},
-                          {"slope = \"360 deg\"", "start = \"" + start + "\"\nslope = \"" + slope + "\""},
-                          {"start = { angle = \"71.8 deg\" }", "start = { angle = \"" + rocker + "\" }"}});
-}
-
-/// The planar four-bar with other lengths, and a crank that starts somewhere else.
-std::string four_bar(const std::string& crank, const std::string& coupler, const std::string& rocker,
-                     const std::string& at, const std::string& rocker_at) {
-  return shipped("4bar", {{"crank = 0.12", "crank = " + crank},
-                          {"coupler = 0.35", "coupler = " + coupler},
-                          {"rocker = 0.25", "rocker = " + rocker},
-                          {"start = { angle = \"45 deg\" }", "start = { angle = \"-" + at + "\" }"},
-                          {"start = { angle = \"97.5 deg\" }", "start = { angle = \"" + rocker_at + "\" }"},
-                          {"slope = \"360 deg\"", "start = \"" + at + "\"\nslope = \"90 deg\""}});
-}
-
-const std::string parallelogram = four_bar("0.25", "0.40", "0.25", "90 deg", "90 deg");
-
-std::string driven_by_slider(const std::string& slope) {
-  return shipped("slidercrank",
-                 {{"[[drive]]\nof = \"crank.angle\"\ntype = \"ramp\"\nslope = \"360 deg\"",
-                   "[[drive]]\nof = \"slider.displacement\"\ntype = \"ramp\"\nstart = 0.3\nslope = " + slope},
-                  {"start = { displacement = \"crank + rod\" }\n", ""},
-                  {"outlet = \"crank\"\n", "outlet = \"crank\"\nstart = { angle = \"80 deg\" }\n"}});
-}
 
 double wrapped(double angle) { return std::remainder(angle, turn); }
 
@@ -212,15 +185,7 @@ TEST(ChangePoint, OfAFourBarWhoseLongestAndShortestLinksAreAsLongAsTheOthers) {
 
 // Two parallelograms on one crank become flat together: the rank drops by two.
 TEST(ChangePoint, OfTwoParallelogramsAtOnceIsPassed) {
-  const std::string second =
-      "\n[[body]]\nname = 'rod2'\n[[body]]\nname = 'wheel2'\n"
-      "[[joint]]\nname = 'pin2'\ntype = 'revolute'\ninlet = { on = 'rocker', at = ['rocker', 0, 0] }\noutlet = 'rod2'\n"
-      "start = { angle = '-90 deg' }\n"
-      "[[joint]]\nname = 'wheel2'\ntype = 'revolute'\ninlet = { on = 'ground', at = ['2*ground', 0, 0] }\n"
-      "outlet = 'wheel2'\nstart = { angle = '90 deg' }\n"
-      "[[joint]]\nname = 'end2'\ntype = 'revolute'\ninlet = { on = 'wheel2', at = ['rocker', 0, 0] }\n"
-      "outlet = { on = 'rod2', at = ['ground', 0, 0] }\nstart = { angle = '-90 deg' }\n";
-  Walking walking(parallelogram + second);
+  Walking walking(two_parallelograms);
   for (const double time : {0.999, 1.0, 1.01, 2.0, 4.0}) {
     const Walk walk = walking.to(time);
     ASSERT_EQ(walk.end, WalkEnd::arrived) << time;

@@ -45,6 +45,7 @@ enum {
   KOPPEL_BRANCH_CHANGED = 2, /* closed, but only by a jump from the last position */
   KOPPEL_NEAR_SINGULAR = 4,  /* closed; the position is badly conditioned */
   KOPPEL_LIMIT_EXCEEDED = 8, /* closed; a coordinate lies outside its limits */
+  KOPPEL_CHANGE_POINT = 16,  /* closed; a position where branches meet was passed on the branch asked for */
   KOPPEL_RETRY = -1,         /* state untouched; a smaller step may succeed */
   KOPPEL_INVALID_ARGUMENT = -2,
   KOPPEL_INVALID_SCENE = -3, /* the diagnostics say where and why */

@@ -2,21 +2,50 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 
 #include "boundary.hpp"
 #include "closure/analysis.hpp"
 #include "closure/close.hpp"
 #include "closure/explain.hpp"
 #include "closure/freedoms.hpp"
+#include "closure/passage.hpp"
 
 namespace {
 
 using koppel::Code;
+using koppel::Mechanism;
 
 std::string number(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", x);
   return text;
+}
+
+/// A length, or an angle in degrees, with all digits that are sure.
+std::string quantity(const Mechanism& m, std::uint32_t coordinate, double value) {
+  const bool angle = m.coordinate_names[coordinate].unit == "rad";
+  char text[48];
+  std::snprintf(text, sizeof text, "%.9f %s", angle ? value * 180.0 / std::numbers::pi : value, angle ? "deg" : "m");
+  return text;
+}
+
+/// Which drive goes no further, where, and what to drive instead.
+void explain_limit(const Mechanism& m, const koppel::Report& report, double asked, koppel::Error& e) {
+  const koppel::Input& input = m.inputs[static_cast<std::size_t>(report.limit_input)];
+  const std::string& name = m.coordinate_names[input.q].name;
+  char time[32];
+  std::snprintf(time, sizeof time, "%.9f", report.limit_time);
+  e.code = Code::drive_limit;
+  e.element = "drive of " + name;
+  e.message = "no closed position at time " + number(asked) + " s: `" + name + "` goes no further than " +
+              quantity(m, input.q, report.limit_value) + ", a limit position that it reaches at " + time + " s";
+  e.advice = "reverse the drive";
+  if (report.drive_instead >= 0) {
+    const auto other = static_cast<std::size_t>(report.drive_instead);
+    e.advice += ", drive `" + m.coordinate_names[other].name + "` instead, which moves most there";
+  }
+  e.advice += ", or follow the curve past the limit (`koppel run --through`, koppel_follow)";
 }
 
 /// What stands in the way, in words; texts are made only now that somebody asks.
@@ -28,6 +57,10 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, do
   switch (status) {
     case KOPPEL_NOT_CLOSED:
     case KOPPEL_RETRY: {
+      if (report != nullptr && report->verdict == koppel::Verdict::limit) {
+        explain_limit(m, *report, time, e);
+        break;
+      }
       e.code = status == KOPPEL_RETRY ? Code::retry_smaller : Code::not_closed;
       e.message = "no closed position found at time " + number(time) + " s";
       if (report != nullptr && std::isfinite(report->residual) && report->open_row < m.equation_names.size()) {
@@ -88,7 +121,23 @@ void write_report(const koppel::Mechanism& m, const koppel::Report& report, kopp
   out.residual = report.residual;
   out.condition = report.condition;
   out.coordinate_error = report.coordinate_error;
+  out.change_points = report.change_points;
+  out.change_point_time = report.change_point_time;
+  out.limit_input = report.limit_input;
+  out.limit_time = report.limit_time;
+  out.limit_value = report.limit_value;
+  out.drive_instead = report.drive_instead;
+  out.limits = report.limits;
+  out.pace = report.pace;
   koppel::write_struct(out, to);
+}
+
+bool acceptable(const koppel_motion_options& o) {
+  return o.branch >= KOPPEL_BRANCH_STAY && o.branch <= KOPPEL_BRANCH_TAKE && std::isfinite(o.speed) && o.speed >= 0.0;
+}
+
+koppel::Branch branch_of(const koppel_motion_options& o) {
+  return o.branch == KOPPEL_BRANCH_TAKE ? koppel::Branch::take : koppel::Branch::stay;
 }
 
 koppel_status misfit(koppel_error* error) {
@@ -111,6 +160,7 @@ static_assert(static_cast<int>(koppel::Verdict::open) == KOPPEL_VERDICT_OPEN);
 static_assert(static_cast<int>(koppel::Verdict::closed) == KOPPEL_VERDICT_CLOSED);
 static_assert(static_cast<int>(koppel::Verdict::not_found) == KOPPEL_VERDICT_NOT_FOUND);
 static_assert(static_cast<int>(koppel::Verdict::retry) == KOPPEL_VERDICT_RETRY);
+static_assert(static_cast<int>(koppel::Verdict::limit) == KOPPEL_VERDICT_LIMIT);
 static_assert(static_cast<int>(koppel::SolverUsed::none) == KOPPEL_SOLVER_NONE);
 static_assert(static_cast<int>(koppel::SolverUsed::newton) == KOPPEL_SOLVER_NEWTON);
 static_assert(static_cast<int>(koppel::SolverUsed::ceres) == KOPPEL_SOLVER_CERES);
@@ -158,15 +208,45 @@ koppel_status koppel_accelerations(koppel_state* state, koppel_work* work, koppe
 
 koppel_status koppel_move(koppel_state* state, koppel_work* work, double time, koppel_report* report,
                           koppel_error* error) {
+  return koppel_move_on(state, work, time, nullptr, report, error);
+}
+
+koppel_status koppel_move_on(koppel_state* state, koppel_work* work, double time, const koppel_motion_options* options,
+                             koppel_report* report, koppel_error* error) {
   return koppel::guarded(error, [&]() -> koppel_status {
     if (!koppel::fit(state, work)) return misfit(error);
     if (!std::isfinite(time)) return koppel::invalid_argument("time is not finite", error);
+    const koppel_motion_options given = koppel::read_struct(options);
+    if (!acceptable(given)) return koppel::invalid_argument("the options name no branch or speed", error);
     koppel::Report result;
-    const koppel_status status = koppel::move(work->work, state->state, time, result);
+    const koppel_status status = koppel::move(work->work, state->state, time, result, branch_of(given));
     if (status >= 0 || status == KOPPEL_NOT_CLOSED || status == KOPPEL_RETRY) {
       write_report(*state->mechanism, result, report);
     }
     return status >= 0 ? status : explain_failure(status, work->work, time, &result, error);
+  });
+}
+
+koppel_status koppel_follow(koppel_state* state, koppel_work* work, double duration,
+                            const koppel_motion_options* options, koppel_report* report, koppel_error* error) {
+  return koppel::guarded(error, [&]() -> koppel_status {
+    if (!koppel::fit(state, work)) return misfit(error);
+    const koppel_motion_options given = koppel::read_struct(options);
+    if (!acceptable(given)) return koppel::invalid_argument("the options name no branch or speed", error);
+    if (!std::isfinite(duration) || duration < 0.0) {
+      return koppel::invalid_argument("the duration is negative or not finite", error);
+    }
+    koppel::Report result;
+    const koppel_status status =
+        koppel::follow(work->work, state->state, duration, given.speed, branch_of(given), result);
+    if (status >= 0) write_report(*state->mechanism, result, report);
+    if (status == KOPPEL_INVALID_ARGUMENT) {
+      return koppel::invalid_argument(
+          "the state does not move with its drives along a curve: move it to a time first; it must have drives and "
+          "loops, and no constraint that depends on time",
+          error);
+    }
+    return status >= 0 ? status : explain_failure(status, work->work, state->state.time, nullptr, error);
   });
 }
 

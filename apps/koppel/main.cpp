@@ -21,6 +21,7 @@ constexpr const char* footer =
     "  koppel run fourbar.toml                         move the drives as the scene proposes\n"
     "  koppel run fourbar.toml --steps 1000 --csv -    and print the recorded columns\n"
     "  koppel run fourbar.toml --log run.lcm           and keep every state in an LCM log\n"
+    "  koppel run fourbar.toml --through               and go on past the limits of its drives\n"
     "Exit codes:\n"
     "  0 fine   1 the scene has errors   2 wrong usage   3 the mechanism did not close, or cannot move as asked\n"
     "  4 a file, a stream or the system failed\n"

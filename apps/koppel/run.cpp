@@ -25,6 +25,8 @@ struct Options {
   std::optional<double> duration;
   std::optional<std::uint32_t> steps;
   std::string csv, lcm, log, name;
+  bool through = false;
+  std::string branch = "stay";
   bool realtime = false;
   bool quiet = false;
   bool json = false;
@@ -51,7 +53,9 @@ class Run {
         motion_(start(model)),
         steps_(options.steps.value_or(model.settings().steps)),
         duration_(options.duration.value_or(model.settings().duration)),
-        records_(model.sizes().records) {}
+        records_(model.sizes().records) {
+    way_.branch = options.branch == "take" ? KOPPEL_BRANCH_TAKE : KOPPEL_BRANCH_STAY;
+  }
 
   Exit run() {
     if (!open()) return outcome_;
@@ -101,6 +105,7 @@ class Run {
     if (outcome_ != Exit::fine) {
       document["diagnostics"].push_back(json_of(error_));
       document["error"] = json_of_failure(error_, failed_step_, duration_ * failed_step_.value_or(0) / steps_);
+      if (!limit_.is_null()) document["error"]["limit"] = limit_;
     }
     return document;
   }
@@ -120,6 +125,7 @@ class Run {
       std::vector<std::string> columns = model_.names(KOPPEL_KIND_RECORD, records_);
       columns.insert(columns.begin(), "time");
       columns.emplace_back("residual");
+      if (options_.through) columns.emplace_back("drive_time");
       table_.emplace(options_.csv, columns);
       if (!table_->good()) return table_failed();
     }
@@ -140,13 +146,17 @@ class Run {
     koppel_state* state = motion_.state.get();
     koppel_work* work = motion_.work.get();
     const Clock::time_point before = Clock::now();
-    const koppel_status status = koppel_move(state, work, time, &report, &error_);
+    const bool follow = options_.through && index > 0;
+    const koppel_status status = follow ? koppel_follow(state, work, duration_ / steps_, &way_, &report, &error_)
+                                        : koppel_move_on(state, work, time, &way_, &report, &error_);
     const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
     if (status < 0) {
       if (!options_.json) std::fprintf(stderr, "step %u, t = %.6g s:\n", index, time);
       if (index == 0) analysis_ = at_start(model_).analysis;
+      if (report.verdict == KOPPEL_VERDICT_LIMIT) limit_ = json_of_limit(report);
       return good(status);
     }
+    pass_singular_positions(time, report);
     if (index == 0) {
       started_ = true;
       summary_.assemble(status, report, seconds);
@@ -164,6 +174,22 @@ class Run {
     return write(time, report);
   }
 
+  /// Coordinates in SI units, radians.
+  nlohmann::ordered_json json_of_limit(const koppel_report& report) const {
+    const std::string input = model_.name(KOPPEL_KIND_INPUT, static_cast<std::size_t>(report.limit_input));
+    nlohmann::ordered_json limit{
+        {"drive", input}, {"value", report.limit_value}, {"time", report.limit_time}, {"drive_instead", nullptr}};
+    if (report.drive_instead >= 0) {
+      limit["drive_instead"] = model_.name(KOPPEL_KIND_COORDINATE, static_cast<std::size_t>(report.drive_instead));
+    }
+    return limit;
+  }
+
+  void pass_singular_positions(double time, const koppel_report& report) {
+    if (report.change_points > 0) summary_.pass_change_points(report.change_points, report.change_point_time);
+    if (report.limits > 0) summary_.pass_limits(time, json_of_limit(report));
+  }
+
   bool write(double time, const koppel_report& report) {
     koppel_state* state = motion_.state.get();
     if (stream_ && !good(koppel_stream_publish(stream_.get(), state, motion_.work.get(), &report))) return false;
@@ -171,6 +197,7 @@ class Run {
     row_.resize(records_ + 2);
     row_.front() = time;
     row_.back() = report.residual;
+    if (options_.through) row_.push_back(koppel_state_time(state));
     return good(koppel_records(state, motion_.work.get(), row_.data() + 1, records_)) && (table_->row(row_), true);
   }
 
@@ -217,6 +244,8 @@ class Run {
   koppel_stream_statistics statistics_ = sized<koppel_stream_statistics>();
   std::optional<koppel_analysis> analysis_;  ///< at time 0
   std::optional<std::uint32_t> failed_step_;
+  nlohmann::ordered_json limit_;  ///< that ended the run
+  koppel_motion_options way_ = sized<koppel_motion_options>();
   Summary summary_;
   koppel_error error_ = sized<koppel_error>();
   Exit outcome_ = Exit::fine;
@@ -291,6 +320,13 @@ void add_run(CLI::App& app, const Common& common, Exit& outcome) {
   command->add_option("--name", options->name, "Channels are KOPPEL_<NAME>_STATE and so on; default: the scene's name")
       ->check(not_empty)
       ->type_name("NAME");
+  command->add_flag("--through", options->through,
+                    "Go on where a drive goes no further: it turns back, and time runs with the length of the way");
+  command
+      ->add_option("--branch", options->branch,
+                   "Where branches meet: stay (go on as the motion came) or take (the other branch); default: stay")
+      ->check(CLI::IsMember({"stay", "take"}))
+      ->type_name("WHICH");
   command->add_flag("--realtime", options->realtime, "Let a second of the run take a second");
   command->add_flag("-q,--quiet", options->quiet, "Print errors only");
   command->add_flag("--json", options->json, "Print the summary as JSON");

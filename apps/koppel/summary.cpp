@@ -66,6 +66,16 @@ void Summary::leave_limits(double time, std::string names) {
   limit_names_ = std::move(names);
 }
 
+void Summary::pass_change_points(std::uint32_t count, double time) {
+  if (change_points_ == 0) change_point_time_ = time;
+  change_points_ += count;
+}
+
+void Summary::pass_limits(double time, nlohmann::ordered_json limit) {
+  limit["at"] = time;
+  limits_.push_back(std::move(limit));
+}
+
 void Summary::print(std::FILE* out) const {
   std::fprintf(out, "assembly    %u iterations, %.3g ms\n", assembly_iterations_, 1e3 * assembly_seconds_);
   std::fprintf(out, "residual    at most %.1e, at t = %.6g s; coordinates within %.1e\n", worst_residual_, worst_time_,
@@ -86,6 +96,15 @@ void Summary::print(std::FILE* out) const {
   if (branch_changed_time_) {
     std::fprintf(out, "remark      changes its branch first at t = %.6g s: use more steps\n", *branch_changed_time_);
   }
+  if (change_points_ > 0) {
+    std::fprintf(out, "remark      passes %llu change points, where branches meet, first at t = %.9f s\n",
+                 static_cast<unsigned long long>(change_points_), change_point_time_);
+  }
+  if (!limits_.empty()) {
+    const nlohmann::ordered_json& first = limits_.front();
+    std::fprintf(out, "remark      passes %zu limits of its drives, first of %s, at t = %.9f s of the drives\n",
+                 limits_.size(), first["drive"].get<std::string>().c_str(), first["time"].get<double>());
+  }
   if (!limit_names_.empty()) {
     std::fprintf(out, "remark      leaves the limits of %s first at t = %.6g s\n", limit_names_.c_str(), limit_time_);
   }
@@ -103,10 +122,14 @@ void Summary::write(nlohmann::ordered_json& document) const {
   document["seconds_per_step"] = unless(steps() == 0, step.value);
   document["seconds_per_step_error"] = unless(steps() == 0, step.error);
   document["branch_changed_time"] = unless(!branch_changed_time_, branch_changed_time_.value_or(0.0));
+  document["change_points"] = change_points_;
+  document["change_point_time"] = unless(change_points_ == 0, change_point_time_);
+  document["limits"] = limits_;
   document["remarks"] = {{"redundant", has(remarks_, KOPPEL_REDUNDANT)},
                          {"near_singular", has(remarks_, KOPPEL_NEAR_SINGULAR)},
                          {"branch_changed", has(remarks_, KOPPEL_BRANCH_CHANGED)},
-                         {"limit_exceeded", has(remarks_, KOPPEL_LIMIT_EXCEEDED)}};
+                         {"limit_exceeded", has(remarks_, KOPPEL_LIMIT_EXCEEDED)},
+                         {"change_point", has(remarks_, KOPPEL_CHANGE_POINT)}};
 }
 
 }  // namespace koppel::app

@@ -29,6 +29,11 @@ class Summary {
   /// names: of the coordinates, one in a line. Only the first call counts.
   void leave_limits(double time, std::string names);
 
+  /// count: of positions where branches meet, passed in one step; time: of the drives at the last of them.
+  void pass_change_points(std::uint32_t count, double time);
+  /// limit: where the drives turned back in the step that ends at `time`.
+  void pass_limits(double time, nlohmann::ordered_json limit);
+
   std::uint32_t steps() const { return static_cast<std::uint32_t>(seconds_.size()); }
   void print(std::FILE* out) const;
   void write(nlohmann::ordered_json& document) const;
@@ -52,6 +57,9 @@ class Summary {
   double limit_time_ = 0.0;                    ///< the first at which a coordinate was outside its limits
   std::string limit_names_;                    ///< then
   bool assembled_ = false;
+  std::uint64_t change_points_ = 0;
+  double change_point_time_ = 0.0;  ///< of the first step that passed one
+  nlohmann::ordered_json limits_ = nlohmann::ordered_json::array();
 };
 
 }  // namespace koppel::app

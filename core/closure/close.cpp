@@ -224,6 +224,11 @@ koppel_status move(Work& work, State& state, double time, Report& report, Branch
   report = Report{};
   work.saved = state;
   Restorer restorer(state, work.saved);
+  if (state.history.pace != 1.0) {
+    // It followed its curve: its rates are not those by time.
+    state.history.pace = 1.0;
+    state.stage = std::min(state.stage, Stage::closed);
+  }
   if (const Input* failed = set_time(*work.mechanism, time, state)) {
     work.equations.blame(*failed);
     return KOPPEL_PLUGIN;

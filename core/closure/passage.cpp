@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/QR>
+
+#include "closure/close.hpp"
 #include "closure/newton.hpp"
 #include "closure/walk.hpp"
 #include "mechanism/coordinates.hpp"
@@ -19,7 +22,7 @@ Eigen::VectorXd direction_of(const Mechanism& mechanism, const State& state, con
     const std::uint32_t rate = mechanism.rate_of_column[i];
     along[i] = state.v[rate] / mechanism.rate_scale[rate];
   }
-  along[mechanism.unknowns] = 1.0 / way.scale();
+  along[mechanism.unknowns] = state.history.pace / way.scale();
   return state.time < state.history.time ? Eigen::VectorXd(-along) : along;
 }
 
@@ -43,9 +46,9 @@ std::int32_t fastest_coordinate(const Mechanism& mechanism, const Eigen::VectorX
 void tell_limit(Curve& curve, const CurvePoint& limit, Report& report) {
   const Mechanism& mechanism = curve.mechanism();
   const std::size_t input = stopped_input(curve, limit);
-  report.verdict = Verdict::limit;
   report.limit_input = static_cast<std::int32_t>(input);
   report.limit_time = curve.way().time();
+  ++report.limits;
   report.limit_value = limit.q[mechanism.inputs[input].q];
   report.drive_instead = fastest_coordinate(mechanism, limit.tangent);
 }
@@ -53,7 +56,10 @@ void tell_limit(Curve& curve, const CurvePoint& limit, Report& report) {
 void tell_passed(Curve& curve, const Walk& walk, Report& report) {
   report.change_points = 0;
   for (const SingularPosition& passed : walk.passed) {
-    if (passed.kind != SingularKind::change_point) continue;
+    if (passed.kind == SingularKind::limit) {
+      tell_limit(curve, passed.point, report);
+      continue;
+    }
     ++report.change_points;
     if (curve.way().evaluate(passed.point.parameter)) report.change_point_time = curve.way().time();
   }
@@ -111,7 +117,113 @@ bool take_rates(Work& work, const State& state, const CurvePlace& place, const I
   return true;
 }
 
+/// Rates of the state by the arc length, at a place of the curve: all but those of cut joints.
+Eigen::VectorXd rates_along(const Curve& curve, const InputWay& way, const Eigen::VectorXd& tangent) {
+  const Mechanism& mechanism = curve.mechanism();
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(mechanism.nv);
+  for (std::uint32_t i = 0; i < mechanism.unknowns; ++i) {
+    const std::uint32_t rate = mechanism.rate_of_column[i];
+    v[rate] = mechanism.rate_scale[rate] * tangent[i];
+  }
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    v[mechanism.inputs[i].v] = way.rate()[static_cast<Eigen::Index>(i)] * way.scale() * tangent[mechanism.unknowns];
+  }
+  return v;
+}
+
+/// What the inputs add to accelerations by the arc length where the parameter runs evenly.
+double bending(const InputWay& way, Eigen::Index input, double pace) {
+  return way.acceleration()[input] * way.scale() * way.scale() * pace * pace;
+}
+
+/// The derivative of the tangent by the arc length, from the second derivative of the equations.
+bool find_curvature(Curve& curve, CurvePlace& place) {
+  const Mechanism& mechanism = curve.mechanism();
+  Work& work = curve.work();
+  CurvePoint& point = place.point;
+  if (!curve.linearise(point.q, point.parameter)) return false;
+  Eigen::VectorXd v = rates_along(curve, curve.way(), point.tangent);
+  Equations& equations = work.equations;
+  if (!equations.motion(point.q, v, work.rest) || !equations.cut_rates(point.q, v) ||
+      !equations.motion(point.q, v, work.rest) || !equations.bias(point.q, v, work.rhs)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    const std::uint32_t rate = mechanism.inputs[i].v;
+    const double bent = bending(curve.way(), static_cast<Eigen::Index>(i), point.tangent[mechanism.unknowns]);
+    work.rhs += bent / mechanism.rate_scale[rate] * equations.jacobian.col(mechanism.column_of_rate[rate]);
+  }
+  Eigen::MatrixXd matrix(mechanism.rows + 1, mechanism.unknowns + 1);
+  matrix << curve.extended(), point.tangent.transpose();
+  Eigen::VectorXd rhs(mechanism.rows + 1);
+  rhs << -work.rhs, 0.0;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+  factors.setThreshold(1e-11);
+  place.second = factors.compute(matrix).solve(rhs);
+  return true;
+}
+
+/// The state at a place of the curve, with rates by a path parameter that runs with the arc length at some speed.
+bool take_place(Curve& curve, const CurvePlace& place, double speed, State& state) {
+  const Mechanism& mechanism = curve.mechanism();
+  Equations& equations = curve.work().equations;
+  const CurvePoint& point = place.point;
+  state.q = point.q;
+  if (!curve.linearise(state.q, point.parameter) || !equations.cut_coordinates(state.q)) return false;
+  const InputWay& way = curve.way();
+  state.time = state.history.time = way.time();
+  state.history.step = 0.0;
+  state.history.pace = speed * way.scale() * point.tangent[mechanism.unknowns];
+  state.v = speed * rates_along(curve, way, point.tangent);
+  state.a = speed * speed * rates_along(curve, way, place.second);
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    const Input& input = mechanism.inputs[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    state.a[input.v] += speed * speed * bending(way, k, point.tangent[mechanism.unknowns]);
+    state.input[k] = state.q[input.q];
+    state.input_rate[k] = state.v[input.v];
+    state.input_acceleration[k] = state.a[input.v];
+  }
+  state.stage = Stage::accelerations;
+  return equations.motion(state.q, state.v, state.a) && equations.cut_rates(state.q, state.v) &&
+         equations.cut_accelerations(state.q, state.v, state.a);
+}
+
+/// Closed, moving, and its inputs where the drives are at its time.
+bool is_on_curve(const Mechanism& mechanism, const State& state) {
+  if (state.stage < Stage::velocities || state.time != state.history.time || mechanism.explicit_time) return false;
+  State drives(mechanism);
+  if (set_time(mechanism, state.time, drives) != nullptr) return false;
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    if (drives.input[static_cast<Eigen::Index>(i)] != state.q[mechanism.inputs[i].q]) return false;
+  }
+  return !mechanism.inputs.empty() && mechanism.rows > 0 && mechanism.unknowns > 0;
+}
+
 }  // namespace
+
+koppel_status follow(Work& work, State& state, double duration, double speed, Branch branch, Report& report) {
+  const Mechanism& mechanism = *work.mechanism;
+  report = Report{};
+  if (!is_on_curve(mechanism, state)) return KOPPEL_INVALID_ARGUMENT;
+  Curve curve(work, InputWay::of_drives(mechanism, 0.0, mechanism.duration));
+  const Eigen::VectorXd along = direction_of(mechanism, state, curve.way());
+  if (speed <= 0.0) speed = along.norm();
+  Walk walk = walk_by(curve, state.q, state.time, along, speed * duration, branch);
+  if (walk.end == WalkEnd::plugin_failed) return KOPPEL_PLUGIN;
+  if (walk.end != WalkEnd::arrived) return KOPPEL_NOT_CLOSED;
+  if (!walk.place.beside_change_point && !find_curvature(curve, walk.place)) return KOPPEL_PLUGIN;
+  State next = state;
+  if (!take_place(curve, walk.place, speed, next)) return KOPPEL_PLUGIN;
+  const koppel_status status = close(work, next, {}, report);  // closed already: only describes it
+  if (status < 0) return status;
+  next.history.rank = report.rank;
+  next.history.weakest = work.condition.smallest;
+  tell_passed(curve, walk, report);
+  report.pace = next.history.pace;
+  state = std::move(next);
+  return report.change_points > 0 ? status | KOPPEL_CHANGE_POINT : status;
+}
 
 PassageEnd pass(Work& work, const State& state, Branch branch, Report& report) {
   const Mechanism& mechanism = *work.mechanism;
@@ -125,7 +237,10 @@ PassageEnd pass(Work& work, const State& state, Branch branch, Report& report) {
   switch (walk.end) {
     case WalkEnd::plugin_failed: return PassageEnd::plugin_failed;
     case WalkEnd::lost: return PassageEnd::lost;
-    case WalkEnd::limit: tell_limit(curve, walk.place.point, report); return PassageEnd::limit;
+    case WalkEnd::limit:
+      tell_limit(curve, walk.place.point, report);
+      report.verdict = Verdict::limit;
+      return PassageEnd::limit;
     case WalkEnd::arrived: break;
   }
   report.solver = SolverUsed::newton;

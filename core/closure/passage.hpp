@@ -7,6 +7,7 @@
 #include "closure/branch.hpp"
 #include "closure/report.hpp"
 #include "closure/work.hpp"
+#include "koppel/plugin.h"
 #include "mechanism/state.hpp"
 
 namespace koppel {
@@ -17,5 +18,11 @@ enum class PassageEnd { arrived, limit, lost, plugin_failed };
 /// they lead from one to the other, else straight. Arrived: work.q is closed for the inputs; where only the branch
 /// tells its rates, work.branch_rates has them. The report gets the limit, or the change points that were passed.
 PassageEnd pass(Work& work, const State& state, Branch branch, Report& report);
+
+/// From a closed state whose inputs are where its drives are, along its curve, past limits, by a duration of a path
+/// parameter that runs with the arc length times `speed` (0: as fast as the drives at time 0). Position, rates and
+/// accelerations by that parameter, and the time of the drives are then those at the end. KOPPEL_INVALID_ARGUMENT: not
+/// such a state, or some constraint depends on time; KOPPEL_NOT_CLOSED: lost; the state is then untouched.
+koppel_status follow(Work& work, State& state, double duration, double speed, Branch branch, Report& report);
 
 }  // namespace koppel

@@ -23,6 +23,8 @@ struct Report {
   double limit_time = 0.0;               ///< when the drives reach it
   double limit_value = 0.0;              ///< of the input
   std::int32_t drive_instead = -1;       ///< the coordinate that moves most there, in q
+  std::uint32_t limits = 0;              ///< that were passed
+  double pace = 1.0;                     ///< time of the drives by path parameter
 };
 
 }  // namespace koppel

@@ -29,6 +29,7 @@ struct State {
     Eigen::VectorXd acceleration;  ///< nv, of the one before
     std::uint32_t rank = 0;        ///< of the closure's equations in the unknowns at the position in q
     double weakest = 0.0;          ///< singular value there that counts
+    double pace = 1.0;             ///< time of the drives by path parameter, of a state that follows its curve
   } history;
 };
 

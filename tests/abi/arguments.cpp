@@ -183,8 +183,8 @@ TEST(Failure, LeavesTheStateAsItWas) {
   ASSERT_EQ(koppel_state_set_input(host.state.get(), 0, 5.0, 0.0, 0.0), KOPPEL_OK);  // a wheel travel of 5 m
   EXPECT_EQ(koppel_close(host.state.get(), host.work.get(), nullptr, &report, &error), KOPPEL_NOT_CLOSED);
   EXPECT_TRUE(read(host) == before);
-  EXPECT_EQ(report.verdict, KOPPEL_VERDICT_NOT_FOUND);
-  EXPECT_STREQ(error.code, "E0701");
+  EXPECT_EQ(report.verdict, KOPPEL_VERDICT_LIMIT);
+  EXPECT_STREQ(error.code, "E0705");
   EXPECT_STRNE(error.advice, "");
   // Rates belong to a position that is closed for the inputs.
   EXPECT_EQ(koppel_velocities(host.state.get(), host.work.get(), &error), refused);

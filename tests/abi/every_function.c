@@ -167,6 +167,13 @@ static void moves(koppel_state* state, koppel_work* work, size_t frame, const ko
     CHECK(report.residual < 1e-13);
   }
   CHECK(koppel_state_time(state) == 1.0);
+  SIZED(koppel_motion_options, way);
+  way.branch = KOPPEL_BRANCH_TAKE;
+  CHECK_OK(koppel_follow(state, work, 0.1, &way, &report, NULL));
+  CHECK(report.residual < 1e-13 && report.limits == 0 && report.pace > 0.0);
+  CHECK(koppel_state_time(state) > 1.0);
+  CHECK_OK(koppel_move_on(state, work, 1.0, &way, &report, NULL));
+  CHECK(koppel_state_time(state) == 1.0 && report.change_points == 0 && report.limit_input == -1);
   char names[8] = "#";
   CHECK_OK(koppel_limits_exceeded(state, names, sizeof names, NULL));
   CHECK(names[0] == '\0'); /* the scene sets none */

@@ -121,6 +121,10 @@ TEST_F(NullPointers, OfSolversAreRefused) {
   EXPECT_EQ(koppel_accelerations(state, nullptr, nullptr), refused);
   EXPECT_EQ(koppel_move(nullptr, work, 0.1, nullptr, nullptr), refused);
   EXPECT_EQ(koppel_move(state, nullptr, 0.1, nullptr, nullptr), refused);
+  EXPECT_EQ(koppel_move_on(nullptr, work, 0.1, nullptr, nullptr, nullptr), refused);
+  EXPECT_EQ(koppel_move_on(state, nullptr, 0.1, nullptr, nullptr, nullptr), refused);
+  EXPECT_EQ(koppel_follow(nullptr, work, 0.1, nullptr, nullptr, nullptr), refused);
+  EXPECT_EQ(koppel_follow(state, nullptr, 0.1, nullptr, nullptr, nullptr), refused);
   EXPECT_EQ(koppel_analyse(nullptr, work, &analysis, nullptr), refused);
   EXPECT_EQ(koppel_analyse(state, nullptr, &analysis, nullptr), refused);
   EXPECT_EQ(koppel_analyse(state, work, nullptr, nullptr), refused);

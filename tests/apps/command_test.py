@@ -145,6 +145,19 @@ class Explain(ProgramTest):
         self.assertIn("does not close at t = 0", text)
 
 
+# The spatial four-bar whose crank swings to and fro.
+LONG_CRANK = ((SCENES / "rstr.toml").read_text().replace("crank = 0.10", "crank = 0.30")
+              .replace('slope = "360 deg"', 'start = "100 deg"\nslope = "10 deg"')
+              .replace("duration = 1.0", "duration = 20.0"))
+
+# Opposite links of equal length; at half time, with the crank at 180 deg, all are in line.
+PARALLELOGRAM = ((SCENES / "4bar.toml").read_text().replace("crank = 0.12", "crank = 0.25")
+                 .replace("coupler = 0.35", "coupler = 0.40")
+                 .replace('start = { angle = "45 deg" }', 'start = { angle = "-90 deg" }')
+                 .replace('start = { angle = "97.5 deg" }', 'start = { angle = "90 deg" }')
+                 .replace('slope = "360 deg"', 'start = "90 deg"\nslope = "180 deg"'))
+
+
 class Run(ProgramTest):
     def test_json_tells_accuracy_and_time_of_steps(self):
         document = self.json(FINE, "run", self.write("scene.toml", FOURBAR), "--steps", "25")
@@ -199,15 +212,55 @@ class Run(ProgramTest):
         self.assertIsNone(document["error"]["step"])
         self.assertEqual(self.json(FINE, "run", self.write("scene.toml", FOURBAR))["diagnostics"], [])
 
-    def test_the_first_change_of_branch_is_told(self):
-        # Steps of several turns are no continuous motion.
-        arguments = ["run", SCENES / "drive.toml", "--duration", "10", "--steps", "2"]
-        document = self.json(FINE, *arguments)
-        self.assertIs(document["remarks"]["branch_changed"], True)
-        self.assertEqual(document["branch_changed_time"], 5.0)
-        self.assertIn("changes its branch first at t = 5 s: use more steps",
-                      self.expect(FINE, "koppel", *arguments).stdout)
+    def test_a_step_over_a_limit_does_not_jump_to_another_branch(self):
+        # The ring goes no further than 90 deg; steps of several turns do not hide that.
+        for steps in ("2", "1000"):
+            arguments = ["run", SCENES / "drive.toml", "--duration", "10", "--steps", steps]
+            document = self.json(NOT_CLOSED, *arguments)
+            self.assertIs(document["remarks"]["branch_changed"], False)
+            self.assertEqual(document["error"]["code"], "E0705")
+            self.assertEqual(document["error"]["limit"]["drive"], "ring.angle")
+            self.assertAlmostEqual(document["error"]["limit"]["value"], math.radians(90), places=9)
         self.assertIsNone(self.json(FINE, "run", self.write("scene.toml", FOURBAR))["branch_changed_time"])
+
+    def test_a_limit_is_told_and_passed_if_asked(self):
+        scene = self.write("rstr.toml", LONG_CRANK)
+        error = self.expect(NOT_CLOSED, "koppel", "run", scene).stderr
+        for text in ("`crank.angle` goes no further than 169.486774773 deg", "6.948677477 s", "reverse the drive",
+                     "drive `cardan.angle1` instead", "--through"):
+            self.assertIn(text, error)
+        limit = self.json(NOT_CLOSED, "run", scene)["error"]["limit"]
+        self.assertAlmostEqual(limit["time"], 6.9486774773, places=9)
+        document = self.json(FINE, "run", scene, "--through", "--duration", "60")
+        self.assertEqual(document["steps"], 360)
+        upper, lower = document["limits"][:2]
+        self.assertAlmostEqual(math.degrees(upper["value"]), 169.486774773, places=8)
+        self.assertAlmostEqual(math.degrees(lower["value"]), 40.333054067, places=8)
+
+    def test_the_table_of_a_run_through_limits_has_the_time_of_the_drives(self):
+        scene = self.write("rstr.toml", LONG_CRANK)
+        table = self.folder / "through.csv"
+        self.expect(FINE, "koppel", "run", scene, "--through", "--csv", table)
+        columns = read_table(table)
+        times = columns["drive_time"]
+        self.assertGreater(max(times), times[-1])
+        for crank, time in zip(columns["crank.angle"], times):
+            self.assertAlmostEqual(math.degrees(crank), 100 + 10 * time, places=9)
+        self.assertLess(max(columns["residual"]), 1e-13)
+
+    def test_a_parallelogram_stays_one_or_folds_over_as_asked(self):
+        scene = self.write("parallelogram.toml", PARALLELOGRAM)
+        for steps in ("7", "40", "1000"):
+            for branch, same in (("stay", True), ("take", False)):
+                table = self.folder / "branch.csv"
+                result = self.expect(FINE, "koppel", "run", scene, "--steps", steps, "--branch", branch, "--csv", table)
+                self.assertIn("passes 1 change points", result.stdout)
+                columns = read_table(table)
+                self.assertEqual(abs(columns["crank.angle"][-1] - columns["rocker.angle"][-1]) < 1e-11, same)
+        document = self.json(FINE, "run", scene, "--steps", "40")
+        self.assertEqual(document["change_points"], 1)
+        self.assertAlmostEqual(document["change_point_time"], 0.5, places=10)
+        self.assertIs(document["remarks"]["change_point"], True)
 
     def test_the_coordinate_that_leaves_its_limits_is_named(self):
         text = FOURBAR.replace("at = [0, 0, 0]", 'at = [0, 0, 0]\nlimits = { angle = [0, "90 deg"] }', 1)

@@ -101,7 +101,7 @@ class Values(unittest.TestCase):
         self.state.set_input("wheel.z", 5.0)
         with self.assertRaises(koppel.Error) as caught:
             self.state.close()
-        self.assertEqual(caught.exception.code, "E0701")
+        self.assertEqual(caught.exception.code, "E0705")
         self.assertEqual(self.state.q.tolist(), before.tolist())
 
     def test_that_are_wrong_are_refused(self):

@@ -1,4 +1,6 @@
 // Moving up to limits and across change points, as a run does it.
+#include "closure/passage.hpp"
+
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -157,6 +159,84 @@ TEST(Limit, AsTheTargetItselfHasNoRates) {
   ASSERT_GE(closed.move(0.9), 0);
   const koppel_status status = closed.move(1.0);
   EXPECT_LT(status, 0);
+}
+
+/// Six steps along the curve; rates are derivatives by the path.
+void expect_rates_by_the_path(Closed& closed, double h) {
+  std::vector<State> states;
+  for (int i = 0; i < 7; ++i) {
+    ASSERT_GE(follow(closed.work, closed.state, h, 0, Branch::stay, closed.report), 0);
+    states.push_back(closed.state);
+  }
+  const auto derivative = [&](const auto& f) -> Eigen::VectorXd {
+    return (45 * (f(states[4]) - f(states[2])) - 9 * (f(states[5]) - f(states[1])) + (f(states[6]) - f(states[0]))) /
+           (60 * h);
+  };
+  const Eigen::VectorXd v = derivative([&](const State& state) {
+    Eigen::VectorXd delta(closed.built->nv);
+    difference(*closed.built, states[3].q, state.q, delta);
+    return delta;
+  });
+  const Eigen::VectorXd a = derivative([](const State& state) { return state.v; });
+  const double speed = 1 + states[3].v.lpNorm<Eigen::Infinity>();
+  EXPECT_LE((v - states[3].v).lpNorm<Eigen::Infinity>(), 1e-7 * speed);
+  EXPECT_LE((a - states[3].a).lpNorm<Eigen::Infinity>(), 1e-6 * speed * speed);
+}
+
+TEST(Through, TheLimitsOfASpatialFourBarTheCrankSwingsToAndFro) {
+  Closed closed(long_crank("100 deg", "71.8 deg", "10 deg"));
+  ASSERT_GE(closed.move(0), 0);
+  double low = 1e9, high = -1e9;
+  std::uint32_t limits = 0;
+  for (int i = 0; i < 2000; ++i) {
+    ASSERT_GE(follow(closed.work, closed.state, 0.05, 0, Branch::stay, closed.report), 0) << i;
+    EXPECT_LE(closed.residual(), 1e-13);
+    limits += closed.report.limits;
+    if (closed.report.limits > 0) {
+      const bool upper = closed.report.limit_value > 100 * degree;
+      EXPECT_NEAR(closed.report.limit_value / degree, upper ? 169.486774773 : 40.333054067, 1e-9);
+    }
+    low = std::min(low, closed.at("crank.angle"));
+    high = std::max(high, closed.at("crank.angle"));
+    EXPECT_NEAR(closed.state.v[closed.built.joint("crank").v], closed.report.pace * 10 * degree, 1e-12);
+  }
+  EXPECT_GE(limits, 4u);
+  EXPECT_NEAR(low / degree, 40.333, 0.02);
+  EXPECT_NEAR(high / degree, 169.487, 0.02);
+  // The rocker has turned fully, again and again.
+  EXPECT_GT(std::abs(closed.at("rocker.angle")), 4 * std::numbers::pi);
+}
+
+TEST(Through, RatesAreDerivativesByThePath) {
+  for (const std::string& text :
+       {long_crank("168 deg", "150 deg", "10 deg"), driven_by_slider("0.1"), parallelogram, shipped("sph4")}) {
+    Closed closed(text);
+    ASSERT_GE(closed.move(0), 0);
+    // Steps of a hundredth of an angle.
+    const double speed = closed.state.v.lpNorm<Eigen::Infinity>();
+    for (int i = 0; i < 10; ++i) expect_rates_by_the_path(closed, 0.01 / (1 + speed));
+  }
+}
+
+TEST(Through, AMoveInTimeGoesOnFromThere) {
+  Closed closed(long_crank("100 deg", "71.8 deg", "10 deg"));
+  ASSERT_GE(closed.move(0), 0);
+  while (closed.report.limits == 0) {
+    ASSERT_GE(follow(closed.work, closed.state, 0.1, 0, Branch::stay, closed.report), 0);
+  }
+  const double time = closed.state.time;
+  ASSERT_GE(closed.move(time - 0.1), 0);
+  EXPECT_NEAR(closed.state.v[closed.built.joint("crank").v], 10 * degree, 1e-12);
+  EXPECT_GT(closed.at("rocker.angle"), 175.2 * degree);
+}
+
+TEST(Through, IsRefusedWhereTheInputsAreNotTheDrives) {
+  Closed closed(long_crank("100 deg", "71.8 deg", "10 deg"));
+  EXPECT_EQ(follow(closed.work, closed.state, 0.1, 0, Branch::stay, closed.report), KOPPEL_INVALID_ARGUMENT);
+  ASSERT_GE(closed.move(0), 0);
+  closed.state.input[0] += 0.01;
+  ASSERT_GE(closed.close(), 0);
+  EXPECT_EQ(follow(closed.work, closed.state, 0.1, 0, Branch::stay, closed.report), KOPPEL_INVALID_ARGUMENT);
 }
 
 }  // namespace

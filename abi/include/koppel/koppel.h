@@ -219,7 +219,8 @@ enum {
   KOPPEL_VERDICT_OPEN = 0,      /* nothing to close */
   KOPPEL_VERDICT_CLOSED = 1,    /* closed; REDUNDANT and NEAR_SINGULAR stand in the status */
   KOPPEL_VERDICT_NOT_FOUND = 2, /* no closed position found from this start */
-  KOPPEL_VERDICT_RETRY = 3      /* the step was too large: halve it */
+  KOPPEL_VERDICT_RETRY = 3,     /* the step was too large: halve it */
+  KOPPEL_VERDICT_LIMIT = 4      /* an input goes no further: limit_input and what follows it tell where */
 };
 
 enum { KOPPEL_SOLVER_NONE = 0, KOPPEL_SOLVER_NEWTON = 1, KOPPEL_SOLVER_CERES = 2 };
@@ -233,9 +234,17 @@ typedef struct koppel_report {
   uint32_t rank;       /* of the equations, with respect to the unknowns */
   uint32_t equations;
   uint32_t unknowns;
-  double residual;         /* greatest equation, metres divided by the scene's length, radians as they are */
-  double condition;        /* ratio of extreme singular values (of those that count), estimated within a factor of 2 */
-  double coordinate_error; /* estimated greatest error of an unknown (radians, or metres over the scene's length) */
+  double residual;          /* greatest equation, metres divided by the scene's length, radians as they are */
+  double condition;         /* ratio of extreme singular values (of those that count), estimated within a factor of 2 */
+  double coordinate_error;  /* estimated greatest error of an unknown (radians, or metres over the scene's length) */
+  uint32_t change_points;   /* positions where branches meet that were passed; CHANGE_POINT stands in the status */
+  int32_t limit_input;      /* the input that goes no further: of LIMIT, or passed by koppel_follow; -1: none */
+  double change_point_time; /* time of the drives [s] of the last of them */
+  double limit_time;        /* time of the drives [s] at the limit */
+  double limit_value;       /* of the input there, located to 1e-9 */
+  int32_t drive_instead;    /* the coordinate that moves most there; -1: none */
+  uint32_t limits;          /* passed by koppel_follow */
+  double pace;              /* of koppel_follow: time of the drives that goes by in a unit of the path, at its end */
 } koppel_report;
 
 enum { KOPPEL_METHOD_AUTO = 0, KOPPEL_METHOD_NEWTON = 1, KOPPEL_METHOD_CERES = 2 };
@@ -259,6 +268,28 @@ KOPPEL_EXPORT koppel_status koppel_accelerations(koppel_state* state, koppel_wor
  * 2^-12; after a failure the state is as before. */
 KOPPEL_EXPORT koppel_status koppel_move(koppel_state* state, koppel_work* work, double time, koppel_report* report,
                                         koppel_error* error);
+
+enum { KOPPEL_BRANCH_STAY = 0, KOPPEL_BRANCH_TAKE = 1 };
+
+typedef struct koppel_motion_options {
+  uint32_t struct_size;
+  int32_t branch; /* past a change point: STAY goes on as the motion came, TAKE takes the other branch */
+  double speed;   /* of koppel_follow: path length in a unit of its `duration`; 0: that which the state has */
+} koppel_motion_options;
+
+/* koppel_move on the branch that is asked for. options: NULL for defaults. */
+KOPPEL_EXPORT koppel_status koppel_move_on(koppel_state* state, koppel_work* work, double time,
+                                           const koppel_motion_options* options, koppel_report* report,
+                                           koppel_error* error);
+/* Moves a closed state along its curve of closed positions, past the limits of its drives: there their time turns back
+ * (koppel_state_time; it stands in the report too, with its pace) while the mechanism goes on. duration: of a path
+ * parameter that runs with the arc length of the curve (radians, lengths over the scene's length, over the speed).
+ * Velocities and accelerations are those by this parameter. The next koppel_follow goes on in the same direction.
+ * NOT_CLOSED: the curve could not be followed. INVALID_ARGUMENT: the state is not where its drives are, or a constraint
+ * of the scene depends on time. */
+KOPPEL_EXPORT koppel_status koppel_follow(koppel_state* state, koppel_work* work, double duration,
+                                          const koppel_motion_options* options, koppel_report* report,
+                                          koppel_error* error);
 
 /* Counts at the present position; singular values are those of the scaled Jacobian of all tree coordinates. */
 typedef struct koppel_analysis {

@@ -5,7 +5,7 @@ import ctypes as c
 ABI = (0, 1)  # major and minor version of the header that this file was written after
 
 OK = 0
-REDUNDANT, BRANCH_CHANGED, NEAR_SINGULAR, LIMIT_EXCEEDED = 1, 2, 4, 8
+REDUNDANT, BRANCH_CHANGED, NEAR_SINGULAR, LIMIT_EXCEEDED, CHANGE_POINT = 1, 2, 4, 8, 16
 STATUSES = {
     -1: "retry with a smaller step", -2: "invalid argument", -3: "invalid scene", -4: "not closed", -5: "singular",
     -6: "a plugin failed", -7: "version", -8: "input or output failed", -9: "no memory", -10: "internal",
@@ -14,7 +14,7 @@ SEVERITIES = ("note", "warning", "error")
 KINDS = {name: number for number, name in enumerate(
     ("body", "frame", "joint", "coordinate", "rate", "input", "record", "equation", "scene"), start=1)}
 Q, V, A = 1, 2, 3
-VERDICTS = ("open", "closed", "not found", "retry")
+VERDICTS = ("open", "closed", "not found", "retry", "limit")
 SOLVERS = ("none", "newton", "ceres")
 METHODS = ("auto", "newton", "ceres")
 
@@ -58,7 +58,9 @@ class Report(Sized):
     _fields_ = [("struct_size", c.c_uint32), ("verdict", c.c_int32), ("solver", c.c_int32),
                 ("iterations", c.c_uint32), ("rank", c.c_uint32), ("equations", c.c_uint32),
                 ("unknowns", c.c_uint32), ("residual", c.c_double), ("condition", c.c_double),
-                ("coordinate_error", c.c_double)]
+                ("coordinate_error", c.c_double), ("change_points", c.c_uint32), ("limit_input", c.c_int32),
+                ("change_point_time", c.c_double), ("limit_time", c.c_double), ("limit_value", c.c_double),
+                ("drive_instead", c.c_int32), ("limits", c.c_uint32), ("pace", c.c_double)]
 
 
 class CloseOptions(Sized):

@@ -9,6 +9,7 @@
 #include "closure/close.hpp"
 #include "closure/explain.hpp"
 #include "closure/freedoms.hpp"
+#include "closure/independent.hpp"
 #include "closure/passage.hpp"
 
 namespace {
@@ -247,6 +248,39 @@ koppel_status koppel_follow(koppel_state* state, koppel_work* work, double durat
           error);
     }
     return status >= 0 ? status : explain_failure(status, work->work, state->state.time, nullptr, error);
+  });
+}
+
+koppel_status koppel_independent(const koppel_state* state, koppel_work* work, uint32_t* rates, size_t size,
+                                 size_t* count, double* quality, koppel_error* error) {
+  return koppel::guarded(error, [&]() -> koppel_status {
+    if (!koppel::fit(state, work)) return misfit(error);
+    if (count == nullptr || (rates == nullptr && size > 0) || *count > size) {
+      return koppel::invalid_argument("rates or count is NULL, or count is larger than size", error);
+    }
+    const Mechanism& m = *state->mechanism;
+    if (!koppel::is_closed(m, state->state)) {
+      return explain_failure(KOPPEL_INVALID_ARGUMENT, work->work, state->state.time, nullptr, error);
+    }
+    koppel::IndependentSet set;
+    set.rates.assign(rates, rates + *count);
+    std::sort(set.rates.begin(), set.rates.end());
+    const bool twice = std::adjacent_find(set.rates.begin(), set.rates.end()) != set.rates.end();
+    if (twice || (!set.rates.empty() && set.rates.back() >= m.nv)) {
+      return koppel::invalid_argument("the set so far names a rate twice, or one that there is not", error);
+    }
+    bool switched = false;
+    if (!koppel::update_independent(work->work, state->state, set, switched)) {
+      return explain_failure(KOPPEL_PLUGIN, work->work, state->state.time, nullptr, error);
+    }
+    if (set.rates.size() > size) {
+      *count = set.rates.size();
+      return koppel::invalid_argument("there is too little room for the independent rates", error);
+    }
+    std::copy(set.rates.begin(), set.rates.end(), rates);
+    *count = set.rates.size();
+    if (quality != nullptr) *quality = set.quality;
+    return KOPPEL_OK;
   });
 }
 

@@ -172,6 +172,17 @@ static void moves(koppel_state* state, koppel_work* work, size_t frame, const ko
   CHECK_OK(koppel_follow(state, work, 0.1, &way, &report, NULL));
   CHECK(report.residual < 1e-13 && report.limits == 0 && report.pace > 0.0);
   CHECK(koppel_state_time(state) > 1.0);
+  uint32_t independent[MOST];
+  size_t count = 0;
+  double quality = 0.0;
+  CHECK_OK(koppel_independent(state, work, independent, MOST, &count, &quality, NULL));
+  CHECK(count == 2 && independent[0] < independent[1] && independent[1] < sizes->rates && quality > 1e-3);
+  const uint32_t first = independent[0];
+  CHECK_OK(koppel_independent(state, work, independent, MOST, &count, NULL, NULL));
+  CHECK(count == 2 && independent[0] == first);
+  CHECK(koppel_independent(state, work, independent, 1, &count, NULL, NULL) == KOPPEL_INVALID_ARGUMENT);
+  count = 0;
+  CHECK(koppel_independent(state, work, independent, 1, &count, NULL, NULL) == KOPPEL_INVALID_ARGUMENT && count == 2);
   CHECK_OK(koppel_move_on(state, work, 1.0, &way, &report, NULL));
   CHECK(koppel_state_time(state) == 1.0 && report.change_points == 0 && report.limit_input == -1);
   char names[8] = "#";

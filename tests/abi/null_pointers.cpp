@@ -123,6 +123,11 @@ TEST_F(NullPointers, OfSolversAreRefused) {
   EXPECT_EQ(koppel_move(state, nullptr, 0.1, nullptr, nullptr), refused);
   EXPECT_EQ(koppel_move_on(nullptr, work, 0.1, nullptr, nullptr, nullptr), refused);
   EXPECT_EQ(koppel_move_on(state, nullptr, 0.1, nullptr, nullptr, nullptr), refused);
+  size_t count = 0;
+  EXPECT_EQ(koppel_independent(nullptr, work, nullptr, 0, &count, nullptr, nullptr), refused);
+  EXPECT_EQ(koppel_independent(state, nullptr, nullptr, 0, &count, nullptr, nullptr), refused);
+  EXPECT_EQ(koppel_independent(state, work, nullptr, 4, &count, nullptr, nullptr), refused);
+  EXPECT_EQ(koppel_independent(state, work, nullptr, 0, nullptr, nullptr, nullptr), refused);
   EXPECT_EQ(koppel_follow(nullptr, work, 0.1, nullptr, nullptr, nullptr), refused);
   EXPECT_EQ(koppel_follow(state, nullptr, 0.1, nullptr, nullptr, nullptr), refused);
   EXPECT_EQ(koppel_analyse(nullptr, work, &analysis, nullptr), refused);

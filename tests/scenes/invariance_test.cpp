@@ -161,5 +161,70 @@ TEST_P(SameMotion, ToTheBitWithAStrangersJoints) {
 INSTANTIATE_TEST_SUITE_P(Scenes, SameMotion, testing::ValuesIn(shipped_scenes()),
                          [](const auto& test) { return test_name(test.param); });
 
+/// A shipped scene changed here and there.
+std::string changed(const std::string& scene, const std::vector<std::pair<std::string, std::string>>& replacements) {
+  std::string text = shipped_scene(scene);
+  for (const auto& [old, with] : replacements) text.replace(text.find(old), old.size(), with);
+  return text;
+}
+
+/// Its crank swings to and fro.
+std::string long_crank() {
+  return changed(
+      "rstr", {{"crank = 0.10", "crank = 0.30"}, {"slope = \"360 deg\"", "start = \"100 deg\"\nslope = \"10 deg\""}});
+}
+
+/// Its links come to lie in line after one second.
+std::string parallelogram() {
+  return changed("4bar", {{"crank = 0.12", "crank = 0.25"},
+                          {"coupler = 0.35", "coupler = 0.40"},
+                          {"start = { angle = \"45 deg\" }", "start = { angle = \"-90 deg\" }"},
+                          {"start = { angle = \"97.5 deg\" }", "start = { angle = \"90 deg\" }"},
+                          {"start = { angle = \"-52.5 deg\" }", "start = { angle = \"-90 deg\" }"},
+                          {"slope = \"360 deg\"", "start = \"90 deg\"\nslope = \"90 deg\""}});
+}
+
+/// What a rewritten scene says of the step over a singular position.
+struct OverSingularPosition : testing::TestWithParam<std::uint64_t> {
+  static koppel_report report_of(const std::string& text) {
+    const Model model(text);
+    Motion motion(model);
+    EXPECT_TRUE(motion.move(0.0));
+    EXPECT_TRUE(motion.move(0.9));
+    // Up to here the parallelogram has no change point, and the long crank no limit.
+    Outcome outcome = motion.move(1.23);
+    if (outcome && outcome.report.change_points == 0) outcome = motion.move(8.0);
+    return outcome.report;
+  }
+
+  void expect_same(const std::string& text, const std::string& other_text) {
+    const koppel_report one = report_of(text), other = report_of(other_text);
+    EXPECT_EQ(one.verdict, other.verdict) << other_text;
+    EXPECT_EQ(one.change_points, other.change_points) << other_text;
+    EXPECT_NEAR(one.change_point_time, other.change_point_time, 1e-11) << other_text;
+    EXPECT_NEAR(one.limit_time, other.limit_time, 1e-12 * (1 + one.limit_time)) << other_text;
+    EXPECT_NEAR(one.limit_value, other.limit_value, 1e-13 * (1 + one.limit_value)) << other_text;
+  }
+};
+
+TEST_P(OverSingularPosition, NothingIsToldOtherwiseByARewrittenScene) {
+  for (const std::string& text : {long_crank(), parallelogram()}) {
+    Random random(GetParam());
+    const koppel_report report = report_of(text);
+    EXPECT_EQ(report.limits + report.change_points, 1u);
+    Rewriting rewriting(text);
+    rewriting.rename(random);
+    expect_same(text, rewriting.text());
+    rewriting.reorder(random);
+    expect_same(text, rewriting.text());
+    rewriting.swap_joints(random);
+    expect_same(text, rewriting.text());
+    rewriting.relocate(random_place(random));
+    expect_same(text, rewriting.text());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, OverSingularPosition, testing::Range<std::uint64_t>(1, 21));
+
 }  // namespace
 }  // namespace koppel::test

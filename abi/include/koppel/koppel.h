@@ -291,6 +291,14 @@ KOPPEL_EXPORT koppel_status koppel_follow(koppel_state* state, koppel_work* work
                                           const koppel_motion_options* options, koppel_report* report,
                                           koppel_error* error);
 
+/* Rates (their numbers in v) that determine all others best at a closed state, as many as there are freedoms: by
+ * column-pivoted QR. rates: room for `size` numbers, of which *count are the set so far. It is kept while the ratio of
+ * the extreme singular values of all others, *quality, is above 1e-3 or no other set has ten times more; *count 0: the
+ * best is chosen. INVALID_ARGUMENT: not closed, no such rates, or too little room; *count is then what it takes, if
+ * that is more. quality may be NULL. */
+KOPPEL_EXPORT koppel_status koppel_independent(const koppel_state* state, koppel_work* work, uint32_t* rates,
+                                               size_t size, size_t* count, double* quality, koppel_error* error);
+
 /* Counts at the present position; singular values are those of the scaled Jacobian of all tree coordinates. */
 typedef struct koppel_analysis {
   uint32_t struct_size;

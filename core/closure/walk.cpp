@@ -12,10 +12,9 @@ namespace koppel {
 namespace {
 
 constexpr double largest_step = 0.05, first_step = 0.02, smallest_step = 1e-7;
-constexpr double back = 0.02;            // from where a walk begins that starts in a singular position
-constexpr double near_singular = 2e-3;   // of the largest singular value: no point of a curve should stand there
-constexpr double same_parameter = 1e-9;  // in the size of an angle
-constexpr int most_steps = 100000;
+constexpr double near_singular = 2e-3;  // of the largest singular value: no point of a curve should stand there
+constexpr double same_place = 1e-9;     // in the size of an angle
+constexpr int most_steps = 4000;
 
 class Walker {
  public:
@@ -38,7 +37,7 @@ class Walker {
   bool go_over(Stretch& stretch, bool leaves_change_point);
   bool end_between(Stretch& stretch, double from, double to);
   bool end_at_length(Stretch& stretch, double from, double to);
-  void arrive(CurvePlace place);
+  void arrive(CurvePlace place, double distance);
 
   Curve& curve_;
   Branch branch_;
@@ -51,6 +50,7 @@ class Walker {
   std::optional<ChangePoint> leave_;  ///< along `leave_along_`
   Eigen::VectorXd leave_along_;
   bool done_ = false;
+  double ended_ = 0.0;  ///< where on the last stretch
 };
 
 bool Walker::begin(const Eigen::VectorXd& q, double parameter, const Eigen::VectorXd& along) {
@@ -82,7 +82,8 @@ void Walker::stop_here() {
 /// From a singular position no tangent can be told but the one that is known: the walk begins some way before it.
 bool Walker::step_back() {
   CurvePoint before;
-  for (double far = back; far > back / 8.0; far /= 2.0) {
+  // Far enough to be clear of it, and not so far that others come near.
+  for (const double far : {0.02, 0.03, 0.045, 0.06, 0.01, 0.005}) {
     if (!curve_.step(origin_, -far, before)) continue;
     if (before.weakest < near_singular * before.largest) continue;
     here_ = before;
@@ -116,7 +117,8 @@ std::optional<Stretch> Walker::next() {
   return std::nullopt;
 }
 
-void Walker::arrive(CurvePlace place) {
+void Walker::arrive(CurvePlace place, double distance) {
+  ended_ = distance;
   walk_.place = std::move(place);
   walk_.end = WalkEnd::arrived;
   done_ = true;
@@ -134,7 +136,7 @@ bool Walker::end_between(Stretch& stretch, double from, double to) {
   if (at_to != 0.0 && (at_from == 0.0 || (at_from < 0.0) == (at_to < 0.0))) return true;
   const double x = root_between(left, from, at_from, to, at_to);
   if (std::isnan(x) || !stretch.at(x, place)) return false;
-  arrive(std::move(place));
+  arrive(std::move(place), x);
   return true;
 }
 
@@ -155,7 +157,7 @@ bool Walker::end_at_length(Stretch& stretch, double from, double to) {
   }
   if (!stretch.at(x, place)) return false;
   gone_ = most;
-  arrive(std::move(place));
+  arrive(std::move(place), x);
   return true;
 }
 
@@ -167,10 +169,14 @@ bool Walker::go_over(Stretch& stretch, bool leaves_change_point) {
   if (skip_ > 0.0) {
     // The origin is the place whose offset along the tangent was stepped back.
     from = stretch.a().tangent.dot(curve_.offset(stretch.a(), origin_.q, origin_.parameter));
+    if (from > stretch.length()) {
+      here_ = stretch.b();
+      return true;
+    }
     skip_ = 0.0;
     gone_ = 0.0;
   }
-  const double after_origin = from > 0.0 ? from + same_parameter : 0.0;
+  const double after_origin = from > 0.0 ? from + same_place : 0.0;
   bool limit_first = limit && (!change || *limit < change->at);
   for (int i = 0; i < 2 && !done_; ++i, limit_first = !limit_first) {
     if (limit_first && limit && *limit > after_origin) {
@@ -188,7 +194,7 @@ bool Walker::go_over(Stretch& stretch, bool leaves_change_point) {
       from = *limit;
     } else if (!limit_first && change && change->at > after_origin) {
       if (!end_between(stretch, from, change->at)) return false;
-      const bool at_end = done_ && target && std::abs(left_to(change->point)) <= same_parameter;
+      const bool at_end = done_ && std::abs(ended_ - change->at) <= same_place;
       if (done_ && !at_end) return true;
       walk_.passed.push_back({SingularKind::change_point, change->point, change->branches.size()});
       from = change->at;

@@ -218,6 +218,24 @@ TEST(Through, RatesAreDerivativesByThePath) {
   }
 }
 
+// A step may end anywhere beside a change point, and the next begin there.
+TEST(Through, ChangePointsOnEitherBranch) {
+  for (const Branch branch : {Branch::stay, Branch::take}) {
+    Closed closed(parallelogram);
+    ASSERT_GE(closed.move(0), 0);
+    std::uint32_t passed = 0;
+    for (int i = 0; i < 3600; ++i) {
+      ASSERT_GE(follow(closed.work, closed.state, 1.0 / 90, 0, branch, closed.report), 0) << i;
+      EXPECT_LE(closed.residual(), 1e-13);
+      EXPECT_LE(closed.report.coordinate_error, 1e-10);
+      passed += closed.report.change_points;
+    }
+    const double turned = closed.at("crank.angle") / std::numbers::pi;
+    EXPECT_EQ(passed, static_cast<std::uint32_t>(turned));
+    EXPECT_EQ(closed.report.limits, 0u);
+  }
+}
+
 TEST(Through, AMoveInTimeGoesOnFromThere) {
   Closed closed(long_crank("100 deg", "71.8 deg", "10 deg"));
   ASSERT_GE(closed.move(0), 0);

@@ -285,8 +285,8 @@ KOPPEL_EXPORT koppel_status koppel_move_on(koppel_state* state, koppel_work* wor
  * (koppel_state_time; it stands in the report too, with its pace) while the mechanism goes on. duration: of a path
  * parameter that runs with the arc length of the curve (radians, lengths over the scene's length, over the speed).
  * Velocities and accelerations are those by this parameter. The next koppel_follow goes on in the same direction.
- * NOT_CLOSED: the curve could not be followed. INVALID_ARGUMENT: the state is not where its drives are, or a constraint
- * of the scene depends on time. */
+ * NOT_CLOSED: the curve could not be followed, or is longer than some 200 radians in one call. INVALID_ARGUMENT: the
+ * state is not where its drives are, or a constraint of the scene depends on time. */
 KOPPEL_EXPORT koppel_status koppel_follow(koppel_state* state, koppel_work* work, double duration,
                                           const koppel_motion_options* options, koppel_report* report,
                                           koppel_error* error);

@@ -6,7 +6,7 @@
 namespace koppel {
 
 enum class Verdict { open, closed, not_found, retry };
-enum class SolverUsed { none, newton, ceres };
+enum class SolverUsed { none, newton, ceres, flow };
 
 struct Report {
   Verdict verdict = Verdict::open;

@@ -5,8 +5,8 @@
 
 namespace koppel {
 
-enum class Verdict { open, closed, not_found, retry, limit };
-enum class SolverUsed { none, newton, ceres };
+enum class Verdict { open, closed, not_found, retry, limit, unreachable };
+enum class SolverUsed { none, newton, ceres, flow };
 
 struct Report {
   Verdict verdict = Verdict::open;

@@ -1,0 +1,21 @@
+#include "closure/flow_closing.hpp"
+
+#include "closure/flow.hpp"
+#include "closure/modes.hpp"
+
+namespace koppel {
+
+FlowOutcome close_by_flow(Work& work, const State& state, Report& report) {
+  ModeOptions options;
+  options.most = 1;
+  options.nearest_first = true;
+  Modes modes;
+  if (!find_modes(work, state, options, modes)) return FlowOutcome::plugin_failed;
+  if (modes.modes.empty()) return modes.complete ? FlowOutcome::unreachable : FlowOutcome::unknown;
+  work.q = modes.modes.front().q;
+  if (!work.equations.evaluate(work.q, state.time)) return FlowOutcome::plugin_failed;
+  report.solver = SolverUsed::flow;
+  return FlowOutcome::closed;
+}
+
+}  // namespace koppel

@@ -1,0 +1,145 @@
+// Following a mechanism by closed forms: the same motion as Newton's method finds on other equations, to rounding.
+#include "closure/flow_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "closed.hpp"
+#include "closure/modes.hpp"
+
+namespace koppel::test {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+/// A scene that moves by Newton's method, and its tracker, which starts where that stands.
+struct Tracked : Closed {
+  explicit Tracked(const std::string& text) : Closed(text), flow(plan_flow(*built.mechanism)) {
+    tracker = FlowTracker::of(*built.mechanism, flow);
+    EXPECT_GE(move(0.0), 0);
+  }
+  /// From the present state to a time, along velocities and accelerations and by the flow.
+  bool follow(double time, State& to) {
+    const double h = time - state.time;
+    to = state;
+    EXPECT_EQ(set_time(*built.mechanism, time, to), nullptr);
+    const Eigen::VectorXd delta = h * state.v + h * h / 2.0 * state.a;
+    integrate(*built.mechanism, state.q, delta, to.q);
+    for (std::size_t i = 0; i < built->inputs.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      to.q[built->inputs[i].q] = to.input[k];
+      to.v[built->inputs[i].v] = to.input_rate[k];
+      to.a[built->inputs[i].v] = to.input_acceleration[k];
+    }
+    return tracker->follow(to.q, to.v, to.a, accuracy);
+  }
+  Flow flow;
+  std::optional<FlowTracker> tracker;
+  TrackedAccuracy accuracy;
+};
+
+class ClosedFormScene : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(FlowTracker, ClosedFormScene,
+                         testing::Values("4bar", "rstr", "rscr", "rccc", "swash", "drive", "sph4", "chain", "7b10j",
+                                         "sar", "9body", "bennett", "cardan", "panto", "slidercrank", "3rpr",
+                                         "6r_inverse", "6joint"),
+                         [](const auto& test) { return std::string("scene_") + test.param; });
+
+/// Both are off by rounding times their condition numbers; rates by that once more for each differentiation.
+TEST_P(ClosedFormScene, MovesAsByNewtonsMethod) {
+  Tracked tracked(shipped(GetParam()));
+  ASSERT_TRUE(tracked.tracker);
+  const int steps = 360;
+  int followed = 0;
+  for (int i = 1; i <= steps; ++i) {
+    const double time = tracked.built->duration * i / steps;
+    State by_flow = tracked.state;
+    const bool fine = tracked.follow(time, by_flow);
+    ASSERT_GE(tracked.move(time), 0) << "at " << time;
+    if (!fine) continue;
+    ++followed;
+    const State& by_newton = tracked.state;
+    Eigen::VectorXd delta(tracked.built->nv);
+    difference(*tracked.built, by_newton.q, by_flow.q, delta);
+    const double condition = std::max(tracked.report.condition, tracked.accuracy.condition);
+    const double allowed = 64.0 * eps * condition * static_cast<double>(tracked.built->nv);
+    const double speed = 1.0 + by_newton.v.lpNorm<Eigen::Infinity>();
+    const double pull = speed * speed + by_newton.a.lpNorm<Eigen::Infinity>();
+    EXPECT_LE(delta.lpNorm<Eigen::Infinity>(), allowed) << "at " << time;
+    EXPECT_LE((by_flow.v - by_newton.v).lpNorm<Eigen::Infinity>(), allowed * condition * speed) << "at " << time;
+    EXPECT_LE((by_flow.a - by_newton.a).lpNorm<Eigen::Infinity>(), allowed * condition * condition * pull)
+        << "at " << time;
+    EXPECT_LE(tracked.accuracy.residual, 1e-14);
+    if (::testing::Test::HasFailure()) return;
+  }
+  EXPECT_EQ(followed, steps) << "nothing here is near a singular position";
+}
+
+/// What it says of its error is no less than what it is off by, and not much more.
+TEST_P(ClosedFormScene, KnowsItsError) {
+  Tracked tracked(shipped(GetParam()));
+  for (int i = 1; i <= 90; ++i) {
+    const double time = tracked.built->duration * i / 360;
+    State by_flow = tracked.state;
+    ASSERT_TRUE(tracked.follow(time, by_flow));
+    ASSERT_GE(tracked.move(time), 0);
+    Eigen::VectorXd delta(tracked.built->nv);
+    difference(*tracked.built, tracked.state.q, by_flow.q, delta);
+    double off = 0.0;
+    for (Eigen::Index k = 0; k < delta.size(); ++k) {
+      off = std::max(off, std::abs(delta[k]) / tracked.built->rate_scale[static_cast<std::size_t>(k)]);
+    }
+    EXPECT_LE(off, tracked.accuracy.coordinate_error + tracked.report.coordinate_error) << "at " << time;
+    EXPECT_LE(tracked.accuracy.coordinate_error, 1e-10);
+  }
+}
+
+/// With a longer crank the spatial four-bar has limits, one of them where the crank stands at 40.333054067 degrees.
+TEST(FlowTracker, LeavesLimitPositionsToOthers) {
+  constexpr double degree = std::numbers::pi / 180.0, limit = 40.333054067 * degree;
+  Closed closed(shipped("rstr", {{"crank = 0.10 ", "crank = 0.30 "}}));
+  const Mechanism& mechanism = *closed.built.mechanism;
+  auto tracker = FlowTracker::of(mechanism, plan_flow(mechanism));
+  ASSERT_TRUE(tracker);
+  const auto at = [&](double angle) {
+    State state(mechanism);
+    state.input[0] = angle;
+    Modes modes;
+    EXPECT_TRUE(find_modes(closed.work, state, {}, modes));
+    return modes;
+  };
+  EXPECT_EQ(at(limit - 1e-6).modes.size(), 0u);
+  ASSERT_GT(at(limit + 1e-6).modes.size(), 0u);
+  const auto follows = [&](double from, double to) {
+    Eigen::VectorXd q = at(from).modes.front().q, v = Eigen::VectorXd::Zero(mechanism.nv), a = v;
+    q[closed.built.coordinate("crank.angle")] = to;
+    TrackedAccuracy accuracy;
+    return tracker->follow(q, v, a, accuracy);
+  };
+  EXPECT_TRUE(follows(60 * degree, 59.9 * degree));
+  EXPECT_FALSE(follows(limit + 1e-6, limit + 2e-6)) << "both solutions are near";
+  EXPECT_FALSE(follows(limit + 1e-2, limit - 1e-6)) << "there is none";
+}
+
+TEST(FlowTracker, HasNoneWhereAChoiceIsLeft) {
+  for (const char* scene : {"dwb", "wishbone", "5link", "stewart", "7r", "7h"}) {
+    const Closed closed(shipped(scene));
+    EXPECT_FALSE(FlowTracker::of(*closed.built.mechanism, plan_flow(*closed.built.mechanism))) << scene;
+  }
+}
+
+TEST(FlowTracker, DoesNotFollowBlindly) {
+  Tracked tracked(shipped("4bar"));
+  Eigen::VectorXd q = tracked.state.q, v = tracked.state.v, a = tracked.state.a;
+  q[tracked.built.coordinate("crank.angle")] += std::numbers::pi;
+  EXPECT_FALSE(tracked.tracker->follow(q, v, a, tracked.accuracy)) << "half a turn at once";
+}
+
+}  // namespace
+}  // namespace koppel::test

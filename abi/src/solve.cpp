@@ -62,6 +62,14 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, do
         explain_limit(m, *report, time, e);
         break;
       }
+      if (report != nullptr && report->verdict == koppel::Verdict::unreachable) {
+        e.code = Code::unreachable;
+        e.message = "at time " + number(time) +
+                    " s the inputs leave the mechanism no closed position at all: every "
+                    "solution of its equations is known, and none is real";
+        e.advice = "check lengths and inputs; `koppel modes --time` shows at which times there are positions";
+        break;
+      }
       e.code = status == KOPPEL_RETRY ? Code::retry_smaller : Code::not_closed;
       e.message = "no closed position found at time " + number(time) + " s";
       if (report != nullptr && std::isfinite(report->residual) && report->open_row < m.equation_names.size()) {
@@ -96,7 +104,7 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, do
 }
 
 bool acceptable(const koppel_close_options& o) {
-  return o.method >= KOPPEL_METHOD_AUTO && o.method <= KOPPEL_METHOD_CERES && std::isfinite(o.tolerance) &&
+  return o.method >= KOPPEL_METHOD_AUTO && o.method <= KOPPEL_METHOD_FLOW && std::isfinite(o.tolerance) &&
          o.tolerance >= 0.0 && o.max_iterations <= std::numeric_limits<std::int32_t>::max();
 }
 
@@ -104,6 +112,7 @@ koppel::CloseOptions options_of(const koppel_close_options& o) {
   koppel::CloseOptions options;
   options.method = o.method == KOPPEL_METHOD_NEWTON  ? koppel::Method::newton
                    : o.method == KOPPEL_METHOD_CERES ? koppel::Method::ceres
+                   : o.method == KOPPEL_METHOD_FLOW  ? koppel::Method::flow
                                                      : koppel::Method::automatic;
   options.max_iterations = o.max_iterations;
   options.tolerance = o.tolerance;
@@ -162,9 +171,11 @@ static_assert(static_cast<int>(koppel::Verdict::closed) == KOPPEL_VERDICT_CLOSED
 static_assert(static_cast<int>(koppel::Verdict::not_found) == KOPPEL_VERDICT_NOT_FOUND);
 static_assert(static_cast<int>(koppel::Verdict::retry) == KOPPEL_VERDICT_RETRY);
 static_assert(static_cast<int>(koppel::Verdict::limit) == KOPPEL_VERDICT_LIMIT);
+static_assert(static_cast<int>(koppel::Verdict::unreachable) == KOPPEL_VERDICT_UNREACHABLE);
 static_assert(static_cast<int>(koppel::SolverUsed::none) == KOPPEL_SOLVER_NONE);
 static_assert(static_cast<int>(koppel::SolverUsed::newton) == KOPPEL_SOLVER_NEWTON);
 static_assert(static_cast<int>(koppel::SolverUsed::ceres) == KOPPEL_SOLVER_CERES);
+static_assert(static_cast<int>(koppel::SolverUsed::flow) == KOPPEL_SOLVER_FLOW);
 
 koppel_status koppel_work_create(const koppel_mechanism* mechanism, koppel_work** work) {
   return koppel::guarded(nullptr, [&]() -> koppel_status {

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "closure/closing.hpp"
+#include "closure/flow_tracker.hpp"
 
 namespace koppel {
 namespace {
@@ -149,12 +151,14 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
     }
   }
   Closing closing(work, state, options, report);
-  const bool closed = tracking ? closing.follow() : closing.assemble();
+  const bool closed = options.method == Method::flow ? closing.by_flow()
+                      : tracking                     ? closing.follow()
+                                                     : closing.assemble();
   if (closing.plugin_failed()) return KOPPEL_PLUGIN;
   if (!closed) {
     report.residual = closing.nearest();
     report.open_row = closing.nearest_row();
-    if (report.verdict == Verdict::limit) return KOPPEL_NOT_CLOSED;
+    if (report.verdict == Verdict::limit || report.verdict == Verdict::unreachable) return KOPPEL_NOT_CLOSED;
     report.verdict = tracking && options.method == Method::newton ? Verdict::retry : Verdict::not_found;
     return report.verdict == Verdict::retry ? KOPPEL_RETRY : KOPPEL_NOT_CLOSED;
   }
@@ -220,6 +224,55 @@ koppel_status accelerations(Work& work, State& state) {
   return KOPPEL_OK;
 }
 
+namespace {
+
+/// The tracker of the mechanism, made on first need; null if it has none.
+FlowTracker* tracker_of(Work& work) {
+  if (!work.tracker_sought) {
+    work.tracker_sought = true;
+    if (auto tracker = FlowTracker::of(*work.mechanism, plan_flow(*work.mechanism, FlowChoice::first))) {
+      work.tracker = std::make_unique<FlowTracker>(std::move(*tracker));
+    }
+  }
+  return work.tracker.get();
+}
+
+/// From a closed state with accelerations to the inputs that it has now, by closed forms. Nothing: not here.
+std::optional<koppel_status> track(Work& work, State& state, Report& report) {
+  const Mechanism& mechanism = *work.mechanism;
+  const double h = state.time - state.history.time;
+  if (state.stage != Stage::accelerations || h == 0.0) return std::nullopt;
+  FlowTracker* tracker = tracker_of(work);
+  if (tracker == nullptr) return std::nullopt;
+  work.delta = h * state.v + (h * h / 2.0) * state.a;
+  integrate(mechanism, state.q, work.delta, work.q);
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    work.q[mechanism.inputs[i].q] = state.input[k];
+    work.v[mechanism.inputs[i].v] = state.input_rate[k];
+    work.a[mechanism.inputs[i].v] = state.input_acceleration[k];
+  }
+  TrackedAccuracy accuracy;
+  if (!tracker->follow(work.q, work.v, work.a, accuracy)) return std::nullopt;
+  remember(state);
+  state.history.weakest = 0.0;  // not known
+  state.q = work.q;
+  state.v = work.v;
+  state.a = work.a;
+  report.verdict = Verdict::closed;
+  report.solver = SolverUsed::flow;
+  report.rank = state.history.rank;
+  report.residual = accuracy.residual;
+  report.condition = accuracy.condition;
+  report.coordinate_error = accuracy.coordinate_error;
+  koppel_status status = KOPPEL_OK;
+  if (report.rank < mechanism.rows) status |= KOPPEL_REDUNDANT;
+  if (any_limit_exceeded(mechanism, state.q)) status |= KOPPEL_LIMIT_EXCEEDED;
+  return status;
+}
+
+}  // namespace
+
 koppel_status move(Work& work, State& state, double time, Report& report, Branch branch) {
   report = Report{};
   work.saved = state;
@@ -232,6 +285,12 @@ koppel_status move(Work& work, State& state, double time, Report& report, Branch
   if (const Input* failed = set_time(*work.mechanism, time, state)) {
     work.equations.blame(*failed);
     return KOPPEL_PLUGIN;
+  }
+  if (branch == Branch::stay) {
+    if (const auto status = track(work, state, report)) {
+      restorer.keep();
+      return *status;
+    }
   }
   CloseOptions options;
   options.branch = branch;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "closure/ceres_closure.hpp"
+#include "closure/flow_closing.hpp"
 #include "closure/passage.hpp"
 
 namespace koppel {
@@ -30,7 +31,9 @@ bool Closing::follow() {
     if (options_.method == Method::newton || believed(distance(work_.q_start), distance(state_.q))) return true;
   }
   if (plugin_failed_) return false;
+  // A state that was moved by closed forms does not know its singular values.
   double weakest = state_.history.weakest;
+  if (weakest == 0.0 && !weakest_here(weakest)) return false;
   if (options_.method == Method::automatic && lead(state_.q, &weakest)) return true;
   if (plugin_failed_ || options_.method == Method::newton) return false;
   if (options_.method == Method::automatic) {
@@ -47,6 +50,22 @@ bool Closing::follow() {
 }
 
 bool Closing::assemble() {
+  if (assemble_numerically()) return true;
+  return !plugin_failed_ && options_.method == Method::automatic && by_flow();
+}
+
+bool Closing::by_flow() {
+  const FlowOutcome outcome = close_by_flow(work_, state_, report_);
+  plugin_failed_ = outcome == FlowOutcome::plugin_failed;
+  if (outcome == FlowOutcome::unreachable) report_.verdict = Verdict::unreachable;
+  if (outcome == FlowOutcome::closed) {
+    work_.q_start = state_.q;
+    branch_changed_ = state_.stage != Stage::assigned && !moved_little();
+  }
+  return outcome == FlowOutcome::closed;
+}
+
+bool Closing::assemble_numerically() {
   work_.q = state_.q;
   set_inputs(1.0);
   if (options_.method != Method::ceres && try_newton()) return true;
@@ -62,6 +81,18 @@ bool Closing::assemble() {
     if (plugin_failed_ || !try_ceres(InputsAre::free)) return false;
   }
   return lead(work_.q);
+}
+
+/// The smallest singular value where the state stands. False: a plugin failed.
+bool Closing::weakest_here(double& weakest) {
+  work_.factorised = false;
+  if (!work_.equations.evaluate(state_.q, state_.history.time)) {
+    plugin_failed_ = true;
+    return false;
+  }
+  work_.factorise(state_.q, state_.history.time);
+  weakest = work_.condition.smallest;
+  return true;
 }
 
 bool Closing::try_newton(InputsAre inputs) {

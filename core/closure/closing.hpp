@@ -21,8 +21,12 @@ class Closing {
   /// is not enough; follows the curve where that is not sure of its branch; falls back on Ceres. The report's verdict
   /// tells of a limit.
   bool follow();
-  /// From any q: Newton if it is near, Ceres from further away; last lets the inputs go, closes, and leads them back.
+  /// From any q: Newton if it is near, Ceres from further away; lets the inputs go, closes, and leads them back; last
+  /// by the solution flow. The report's verdict tells if the position is unreachable.
   bool assemble();
+
+  /// By the solution flow alone.
+  bool by_flow();
 
   bool plugin_failed() const { return plugin_failed_; }
   /// After a search without success: the least error that was left with the inputs where they should be, and the
@@ -43,6 +47,8 @@ class Closing {
   bool lead(const Eigen::VectorXd& from, double* weakest = nullptr);
   bool believed(double correction, double motion);
   bool same_orientation();
+  bool weakest_here(double& weakest);
+  bool assemble_numerically();
   double distance(const Eigen::VectorXd& from);
 
   Work& work_;

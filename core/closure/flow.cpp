@@ -92,11 +92,11 @@ std::set<JointId> joints_to_favour(const Flow& flow) {
 
 }  // namespace
 
-Flow plan_flow(const Mechanism& mechanism) {
+Flow plan_flow(const Mechanism& mechanism, FlowChoice choice) {
   Flow best = plan_with(mechanism, {});
-  if (best.loops.loops.size() > most_loops) return best;
-  const auto attempt = [&](const LoopChoice& choice) {
-    Flow other = plan_with(mechanism, choice);
+  if (choice == FlowChoice::first || best.loops.loops.size() > most_loops) return best;
+  const auto attempt = [&](const LoopChoice& loops) {
+    Flow other = plan_with(mechanism, loops);
     if (cost(other) < cost(best)) best = std::move(other);
   };
   for (const JointId joint : joints_to_favour(best)) attempt({joint, std::nullopt});

@@ -57,6 +57,10 @@ struct Flow {
 /// are always met (those of planar and spherical loops) are told by their derivatives at random positions. Where
 /// unknowns remain that must be solved together, other independent loops are tried - those that share one joint, or the
 /// pose of a body as auxiliary coordinates - and the ones that leave the least to solve are taken (K-II-4.2.2, 4.3.2).
-Flow plan_flow(const Mechanism& mechanism);
+enum class FlowChoice {
+  best,
+  first  ///< the loops of least size alone, which is soon done
+};
+Flow plan_flow(const Mechanism& mechanism, FlowChoice choice = FlowChoice::best);
 
 }  // namespace koppel

@@ -1,6 +1,7 @@
 #include "closure/work.hpp"
 
 #include "closure/ceres_closure.hpp"
+#include "closure/flow_tracker.hpp"
 
 namespace koppel {
 
@@ -12,6 +13,8 @@ Work::Work(std::shared_ptr<const Mechanism> m)
       q_trial(mechanism->nq),
       q_start(mechanism->nq),
       delta(mechanism->nv),
+      v(mechanism->nv),
+      a(mechanism->nv),
       rhs(mechanism->rows),
       rhs_copy(mechanism->rows),
       step(mechanism->columns),

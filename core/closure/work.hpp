@@ -14,6 +14,7 @@
 namespace koppel {
 
 class CeresClosure;
+class FlowTracker;
 
 /// Rates at a position where not the equations but only the branch tells them.
 struct BranchRates {
@@ -35,7 +36,7 @@ struct Work {
   Factorisation::Condition condition;  ///< there
 
   Eigen::VectorXd q, q_trial, q_start;  ///< nq
-  Eigen::VectorXd delta;                ///< nv
+  Eigen::VectorXd delta, v, a;          ///< nv
   Eigen::VectorXd rhs, rhs_copy;        ///< rows
   Eigen::VectorXd step;                 ///< columns
   Eigen::VectorXd rest;                 ///< nv zeros
@@ -47,8 +48,10 @@ struct Work {
   /// Jacobian and factorisation where the equations stand, which is at q.
   void factorise(const Eigen::VectorXd& at, double time);
 
-  std::unique_ptr<BranchRates> branch_rates;   ///< of the last closure, if it ended beside a change point
-  std::unique_ptr<CeresClosure> ceres;         ///< built on first need
+  std::unique_ptr<BranchRates> branch_rates;  ///< of the last closure, if it ended beside a change point
+  std::unique_ptr<CeresClosure> ceres;        ///< built on first need
+  std::unique_ptr<FlowTracker> tracker;       ///< built with the first step of a motion, if the mechanism has one
+  bool tracker_sought = false;
   std::unique_ptr<Factorisation> all_columns;  ///< when the inputs are free too; built on first need
 };
 

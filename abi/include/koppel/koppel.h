@@ -216,14 +216,15 @@ KOPPEL_EXPORT koppel_status koppel_work_create(const koppel_mechanism* mechanism
 KOPPEL_EXPORT void koppel_work_destroy(koppel_work* work);
 
 enum {
-  KOPPEL_VERDICT_OPEN = 0,      /* nothing to close */
-  KOPPEL_VERDICT_CLOSED = 1,    /* closed; REDUNDANT and NEAR_SINGULAR stand in the status */
-  KOPPEL_VERDICT_NOT_FOUND = 2, /* no closed position found from this start */
-  KOPPEL_VERDICT_RETRY = 3,     /* the step was too large: halve it */
-  KOPPEL_VERDICT_LIMIT = 4      /* an input goes no further: limit_input and what follows it tell where */
+  KOPPEL_VERDICT_OPEN = 0,       /* nothing to close */
+  KOPPEL_VERDICT_CLOSED = 1,     /* closed; REDUNDANT and NEAR_SINGULAR stand in the status */
+  KOPPEL_VERDICT_NOT_FOUND = 2,  /* no closed position found from this start */
+  KOPPEL_VERDICT_RETRY = 3,      /* the step was too large: halve it */
+  KOPPEL_VERDICT_LIMIT = 4,      /* an input goes no further: limit_input and what follows it tell where */
+  KOPPEL_VERDICT_UNREACHABLE = 5 /* there is no closed position for these inputs, and that is certain */
 };
 
-enum { KOPPEL_SOLVER_NONE = 0, KOPPEL_SOLVER_NEWTON = 1, KOPPEL_SOLVER_CERES = 2 };
+enum { KOPPEL_SOLVER_NONE = 0, KOPPEL_SOLVER_NEWTON = 1, KOPPEL_SOLVER_CERES = 2, KOPPEL_SOLVER_FLOW = 3 };
 
 /* How a closure went. */
 typedef struct koppel_report {
@@ -234,8 +235,9 @@ typedef struct koppel_report {
   uint32_t rank;       /* of the equations, with respect to the unknowns */
   uint32_t equations;
   uint32_t unknowns;
-  double residual;          /* greatest equation, metres divided by the scene's length, radians as they are */
-  double condition;         /* ratio of extreme singular values (of those that count), estimated within a factor of 2 */
+  double residual;  /* greatest equation, metres divided by the scene's length, radians as they are */
+  double condition; /* ratio of extreme singular values (of those that count), estimated within a factor of 2; of FLOW
+                       greatest ratio of a condition's amplitude to its slope */
   double coordinate_error;  /* estimated greatest error of an unknown (radians, or metres over the scene's length) */
   uint32_t change_points;   /* positions where branches meet that were passed; CHANGE_POINT stands in the status */
   int32_t limit_input;      /* the input that goes no further: of LIMIT, or passed by koppel_follow; -1: none */
@@ -247,11 +249,12 @@ typedef struct koppel_report {
   double pace;              /* of koppel_follow: time of the drives that goes by in a unit of the path, at its end */
 } koppel_report;
 
-enum { KOPPEL_METHOD_AUTO = 0, KOPPEL_METHOD_NEWTON = 1, KOPPEL_METHOD_CERES = 2 };
+/* AUTO: Newton, then Ceres, last the solution flow; FLOW: the solution flow alone */
+enum { KOPPEL_METHOD_AUTO = 0, KOPPEL_METHOD_NEWTON = 1, KOPPEL_METHOD_CERES = 2, KOPPEL_METHOD_FLOW = 3 };
 
 typedef struct koppel_close_options {
   uint32_t struct_size;
-  int32_t method;          /* AUTO: Newton, then Ceres */
+  int32_t method;
   uint32_t max_iterations; /* 0: 50 for Newton, 500 for Ceres */
   double tolerance;        /* of the residual; 0: down to rounding; nothing above 1e-10 counts as closed */
 } koppel_close_options;

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "closure/modes.hpp"
 #include "closure/work.hpp"
 #include "koppel/koppel.h"
 #include "mechanism/mechanism.hpp"
@@ -43,6 +44,12 @@ struct koppel_state {
 struct koppel_work {
   std::shared_ptr<koppel::Registry> registry;
   koppel::Work work;
+};
+
+struct koppel_modes {
+  std::shared_ptr<koppel::Registry> registry;
+  std::shared_ptr<const koppel::Mechanism> mechanism;
+  koppel::Modes modes;
 };
 
 struct koppel_stream {

@@ -2,6 +2,8 @@
 
 #include "boundary.hpp"
 #include "closure/explain.hpp"
+#include "closure/explain_flow.hpp"
+#include "closure/flow_diagram.hpp"
 #include "mechanism/inertia.hpp"
 
 namespace {
@@ -170,6 +172,19 @@ koppel_status koppel_mechanism_explain(const koppel_mechanism* mechanism, char* 
   return koppel::guarded(nullptr, [&]() -> koppel_status {
     if (mechanism == nullptr) return KOPPEL_INVALID_ARGUMENT;
     return koppel::write_text(koppel::explain(*mechanism->mechanism), text, size, needed);
+  });
+}
+
+koppel_status koppel_flow_explain(const koppel_mechanism* mechanism, int32_t format, char* text, size_t size,
+                                  size_t* needed) {
+  return koppel::guarded(nullptr, [&]() -> koppel_status {
+    if (mechanism == nullptr || (format != KOPPEL_FLOW_TEXT && format != KOPPEL_FLOW_DOT)) {
+      return KOPPEL_INVALID_ARGUMENT;
+    }
+    const Mechanism& m = *mechanism->mechanism;
+    const koppel::Flow flow = koppel::plan_flow(m);
+    const std::string words = format == KOPPEL_FLOW_DOT ? koppel::flow_diagram(m, flow) : koppel::explain(m, flow);
+    return koppel::write_text(words, text, size, needed);
   });
 }
 

@@ -21,6 +21,7 @@ struct Common {
 
 void add_check(CLI::App& app, const Common& common, Exit& outcome);
 void add_explain(CLI::App& app, const Common& common, Exit& outcome);
+void add_modes(CLI::App& app, const Common& common, Exit& outcome);
 void add_run(CLI::App& app, const Common& common, Exit& outcome);
 
 /// One finding as it stands in --json.

@@ -1,4 +1,4 @@
-// koppel explain SCENE | CODE
+// koppel explain SCENE [--flow [FILE]] | CODE
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -7,6 +7,7 @@
 
 #include "koppel/at_start.hpp"
 #include "koppel/command.hpp"
+#include "koppel/drawing.hpp"
 
 namespace koppel::app {
 namespace {
@@ -56,19 +57,53 @@ Exit explain_scene(const std::string& file, bool verbose) {
   return Exit::fine;
 }
 
+std::string flow_of(const Model& model, std::int32_t format) {
+  return text_of([&](char* buffer, std::size_t size, std::size_t* needed) {
+    return koppel_flow_explain(model.mechanism.get(), format, buffer, size, needed);
+  });
+}
+
+/// drawing: the file that gets the block diagram; empty: none.
+Exit explain_flow(const std::string& file, const std::string& drawing, bool verbose) {
+  const Model model = load(file, verbose);
+  model.print_findings();
+  if (!model.mechanism) return model.outcome;
+  const std::string text = flow_of(model, KOPPEL_FLOW_TEXT);
+  if (text.empty()) {
+    std::fputs("error: the flow cannot be told; the system may be short of memory\n", stderr);
+    return Exit::system;
+  }
+  std::fputs(text.c_str(), stdout);
+  return drawing.empty() ? Exit::fine : write_drawing(flow_of(model, KOPPEL_FLOW_DOT), drawing);
+}
+
 }  // namespace
 
 void add_explain(CLI::App& app, const Common& common, Exit& outcome) {
+  struct Options {
+    std::string subject, drawing;
+  };
   CLI::App* command = app.add_subcommand(
       "explain", "Tell what was built from a scene and how its loops are closed, or what a finding's code means");
-  auto subject = std::make_shared<std::string>();
-  command->add_option("SUBJECT", *subject, "A scene file, or a code such as E0304")
+  auto options = std::make_shared<Options>();
+  command->add_option("SUBJECT", options->subject, "A scene file, or a code such as E0304")
       ->required()
       ->check(not_empty)
       ->type_name("");
-  command->callback([subject, &common, &outcome] {
-    const std::string code = upper(*subject);
-    outcome = looks_like_code(code) ? explain_code(code) : explain_scene(*subject, common.verbose);
+  CLI::Option* flow = command
+                          ->add_option("--flow", options->drawing,
+                                       "Tell instead in which order and how the coordinates follow from the inputs; "
+                                       "FILE.svg or FILE.dot gets a block diagram of it")
+                          ->expected(0, 1)
+                          ->check(drawing_file)
+                          ->type_name("[FILE]");
+  command->callback([options, flow, &common, &outcome] {
+    const std::string code = upper(options->subject);
+    if (flow->count() > 0) {
+      outcome = explain_flow(options->subject, options->drawing, common.verbose);
+    } else {
+      outcome = looks_like_code(code) ? explain_code(code) : explain_scene(options->subject, common.verbose);
+    }
   });
 }
 

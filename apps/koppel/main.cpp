@@ -17,7 +17,9 @@ constexpr const char* footer =
     "Examples:\n"
     "  koppel check fourbar.toml                       find every fault; count freedoms; close at t = 0\n"
     "  koppel explain fourbar.toml                     how the loops are cut, equations and unknowns\n"
+    "  koppel explain fourbar.toml --flow flow.svg     in which order the coordinates follow from the inputs, drawn\n"
     "  koppel explain E0304                            what a finding means\n"
+    "  koppel modes fourbar.toml                       every closed position for the inputs at t = 0\n"
     "  koppel run fourbar.toml                         move the drives as the scene proposes\n"
     "  koppel run fourbar.toml --steps 1000 --csv -    and print the recorded columns\n"
     "  koppel run fourbar.toml --log run.lcm           and keep every state in an LCM log\n"
@@ -44,6 +46,7 @@ int command(int argc, char** argv) {
   app.add_flag("-v,--verbose", common.verbose, "Print the library's log on standard error");
   add_check(app, common, outcome);
   add_explain(app, common, outcome);
+  add_modes(app, common, outcome);
   add_run(app, common, outcome);
   try {
     app.parse(argc, argv);

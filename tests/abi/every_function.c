@@ -133,6 +133,54 @@ static void closes_by_every_method(const koppel_mechanism* mechanism, koppel_wor
   }
 }
 
+/* ---- flow and modes */
+
+static int32_t count_calls(size_t found, double part, void* user) {
+  CHECK(part >= 0.0 && part <= 1.0 + 1e-12 && found <= 4096);
+  ++*(int*)user;
+  return 0;
+}
+
+static void explains_its_flow(const koppel_mechanism* mechanism) {
+  char text[16384];
+  size_t needed = 0;
+  CHECK_OK(koppel_flow_explain(mechanism, KOPPEL_FLOW_TEXT, text, sizeof text, &needed));
+  CHECK(needed == strlen(text) + 1 && strstr(text, "rack.displacement") != NULL);
+  CHECK_OK(koppel_flow_explain(mechanism, KOPPEL_FLOW_DOT, text, sizeof text, &needed));
+  CHECK(needed == strlen(text) + 1 && strncmp(text, "digraph", 7) == 0);
+}
+
+static void finds_its_modes(const koppel_mechanism* mechanism, koppel_work* work, const koppel_sizes* sizes) {
+  koppel_state* state = NULL;
+  koppel_modes* modes = NULL;
+  int calls = 0;
+  koppel_modes_options options = {.struct_size = sizeof options, .progress = count_calls, .user = &calls};
+  SIZED(koppel_modes_summary, summary);
+  SIZED(koppel_mode, mode);
+  SIZED(koppel_report, report);
+  char text[256];
+  double start[MOST], closed[MOST];
+  CHECK_OK(koppel_state_create(mechanism, &state));
+  CHECK_OK(koppel_modes_find(state, work, &options, &modes, NULL));
+  CHECK_OK(koppel_modes_summarise(modes, &summary));
+  CHECK(summary.count > 0 && summary.complete == 1 && summary.twins == 32 && calls > 0);
+  CHECK_OK(koppel_modes_why(modes, text, sizeof text, NULL));
+  CHECK(text[0] != '\0');
+  for (size_t i = 0; i < summary.count; ++i) {
+    CHECK_OK(koppel_modes_get(modes, i, &mode));
+    CHECK(mode.residual < 1e-13);
+    CHECK_OK(koppel_modes_id(modes, i, text, sizeof text, NULL));
+    CHECK(text[0] != '\0');
+    CHECK_OK(koppel_modes_take(modes, i, state));
+    CHECK_OK(koppel_state_get(state, KOPPEL_Q, start, sizes->coordinates));
+    CHECK_OK(koppel_close(state, work, NULL, &report, NULL));
+    CHECK_OK(koppel_state_get(state, KOPPEL_Q, closed, sizes->coordinates));
+    for (size_t k = 0; k < sizes->coordinates; ++k) CHECK_NEAR(closed[k], start[k], 1e-12);
+  }
+  koppel_modes_destroy(modes);
+  koppel_state_destroy(state);
+}
+
 /* The wheel goes up at 1 m/s from the design position: golden rates of X-5LINK. */
 static void has_rates(koppel_state* state, koppel_work* work, size_t frame, const koppel_sizes* sizes) {
   static const double golden[6] = {-0.452162529, -0.166312272, -0.377515966, -0.008969121, -0.006120659, 1.0};
@@ -266,6 +314,8 @@ static void uses_a_suspension(koppel_engine* engine, const char* file, const cha
   if (failures > 0 || sizes.coordinates > MOST) return;
   describes_itself(mechanism);
   closes_by_every_method(mechanism, work);
+  explains_its_flow(mechanism);
+  finds_its_modes(mechanism, work, &sizes);
   has_rates(state, work, frame, &sizes);
   moves(state, work, frame, &sizes);
   keeps_copies(mechanism, state, &sizes);

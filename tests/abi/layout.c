@@ -211,6 +211,23 @@ AT(koppel_freedoms, isolated, 32)
 AT(koppel_freedoms, indeterminate, 36)
 AT(koppel_freedoms, shaky, 40)
 
+GROWS(koppel_modes_options, 40)
+AT(koppel_modes_options, all_twins, 4)
+AT(koppel_modes_options, most, 8)
+AT(koppel_modes_options, restarts, 16)
+AT(koppel_modes_options, progress, 24)
+AT(koppel_modes_options, user, 32)
+
+GROWS(koppel_modes_summary, 32)
+AT(koppel_modes_summary, complete, 4)
+AT(koppel_modes_summary, count, 8)
+AT(koppel_modes_summary, twins, 16)
+AT(koppel_modes_summary, missed_by, 24)
+
+GROWS(koppel_mode, 16)
+AT(koppel_mode, limit, 4)
+AT(koppel_mode, residual, 8)
+
 GROWS(koppel_stream_options, 32)
 AT(koppel_stream_options, url, 8)
 AT(koppel_stream_options, name, 16)

@@ -143,6 +143,35 @@ TEST_F(NullPointers, OfSolversAreRefused) {
   EXPECT_TRUE(read(host) == before);
 }
 
+TEST_F(NullPointers, OfFlowAndModesAreRefused) {
+  EXPECT_EQ(koppel_flow_explain(nullptr, KOPPEL_FLOW_TEXT, text, sizeof text, &needed), refused);
+  EXPECT_EQ(koppel_flow_explain(mechanism, KOPPEL_FLOW_TEXT, nullptr, 0, nullptr), refused);
+  Output<koppel_modes*> out;
+  EXPECT_EQ(koppel_modes_find(nullptr, work, nullptr, &out, nullptr), refused);
+  EXPECT_EQ(koppel_modes_find(state, nullptr, nullptr, &out, nullptr), refused);
+  EXPECT_EQ(koppel_modes_find(state, work, nullptr, nullptr, nullptr), refused);
+  EXPECT_TRUE(out.untouched());
+  koppel_modes* found = nullptr;
+  ASSERT_EQ(koppel_modes_find(state, work, nullptr, &found, nullptr), KOPPEL_OK);
+  const Modes modes(found);
+  const Reading before = read(host);
+  auto summary = sized<koppel_modes_summary>();
+  auto mode = sized<koppel_mode>();
+  EXPECT_EQ(koppel_modes_summarise(nullptr, &summary), refused);
+  EXPECT_EQ(koppel_modes_summarise(found, nullptr), refused);
+  EXPECT_EQ(koppel_modes_why(nullptr, text, sizeof text, &needed), refused);
+  EXPECT_EQ(koppel_modes_why(found, nullptr, 0, nullptr), refused);
+  EXPECT_EQ(koppel_modes_get(nullptr, 0, &mode), refused);
+  EXPECT_EQ(koppel_modes_get(found, 0, nullptr), refused);
+  EXPECT_EQ(koppel_modes_id(nullptr, 0, text, sizeof text, &needed), refused);
+  EXPECT_EQ(koppel_modes_id(found, 0, nullptr, 0, nullptr), refused);
+  EXPECT_EQ(koppel_modes_take(nullptr, 0, state), refused);
+  EXPECT_EQ(koppel_modes_take(found, 0, nullptr), refused);
+  EXPECT_TRUE(read(host) == before);
+  EXPECT_STREQ(text, "as before");
+  EXPECT_EQ(needed, 77u);
+}
+
 TEST_F(NullPointers, OfResultsAreRefused) {
   const std::size_t twelve = 12 * std::size_t{host.sizes.bodies}, six = 6 * std::size_t{host.sizes.bodies};
   const std::size_t jacobian = 6 * std::size_t{host.sizes.rates};
@@ -189,6 +218,7 @@ TEST_F(NullPointers, ThatStandForNothingToFreeAreFine) {
   koppel_mechanism_destroy(nullptr);
   koppel_state_destroy(nullptr);
   koppel_work_destroy(nullptr);
+  koppel_modes_destroy(nullptr);
   EXPECT_EQ(koppel_stream_close(nullptr, nullptr), KOPPEL_OK);
 }
 

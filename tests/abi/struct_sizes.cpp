@@ -81,6 +81,16 @@ TEST(StructSizes, OfOutputsMayDiffer) {
       [&](auto* out) { EXPECT_EQ(koppel_find_freedoms(state, work, out, nullptr), KOPPEL_OK); });
 }
 
+TEST(StructSizes, OfModesMayDiffer) {
+  const Host host("rstr");
+  koppel_modes* found = nullptr;
+  ASSERT_EQ(koppel_modes_find(host.state.get(), host.work.get(), nullptr, &found, nullptr), KOPPEL_OK);
+  const Modes modes(found);
+  expect_all_ages_served<koppel_modes_summary>(
+      [&](auto* out) { EXPECT_EQ(koppel_modes_summarise(found, out), KOPPEL_OK); });
+  expect_all_ages_served<koppel_mode>([&](auto* out) { EXPECT_EQ(koppel_modes_get(found, 0, out), KOPPEL_OK); });
+}
+
 TEST(StructSizes, OfErrorsMayDiffer) {
   const Engine engine = make_engine();
   expect_all_ages_served<koppel_error>([&](auto* out) {
@@ -133,6 +143,24 @@ TEST(StructSizes, OfOptionsMayBeOlder) {
   koppel_scene* scene = nullptr;
   ASSERT_EQ(koppel_scene_from_file(engine, KOPPEL_SCENES "/rstr.toml", nullptr, &scene, nullptr), KOPPEL_OK);
   koppel_scene_destroy(scene);
+}
+
+TEST(StructSizes, OfOptionsOfASearchMayBeOlder) {
+  const Host host("rstr");
+  auto options = sized<koppel_modes_options>();
+  options.struct_size = offsetof(koppel_modes_options, progress);
+  options.most = 2;
+  options.progress = [](std::size_t, double, void*) -> std::int32_t {
+    ADD_FAILURE() << "an option was read that is not there";
+    return 1;
+  };
+  koppel_modes* found = nullptr;
+  ASSERT_EQ(koppel_modes_find(host.state.get(), host.work.get(), &options, &found, nullptr), KOPPEL_OK);
+  const Modes modes(found);
+  auto summary = sized<koppel_modes_summary>();
+  ASSERT_EQ(koppel_modes_summarise(found, &summary), KOPPEL_OK);
+  EXPECT_EQ(summary.count, 2u);
+  EXPECT_EQ(summary.complete, 0);
 }
 
 TEST(StructSizes, OfOptionsMayBeNewer) {

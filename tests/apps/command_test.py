@@ -11,9 +11,9 @@ from program import (FAR, FINE, FOURBAR, LOCKED, NOT_CLOSED, OVERDRIVEN, SCENE, 
 class Usage(ProgramTest):
     def test_help_teaches_by_examples_and_names_the_exit_codes(self):
         text = self.expect(FINE, "koppel", "--help").stdout
-        for word in ("check", "explain", "run", "Examples:", "Exit codes:"):
+        for word in ("check", "explain", "modes", "run", "Examples:", "Exit codes:"):
             self.assertIn(word, text)
-        for command in ("check", "explain", "run"):
+        for command in ("check", "explain", "modes", "run"):
             self.assertIn("Examples:", self.expect(FINE, "koppel", command, "--help").stdout)
 
     def test_version_is_printed(self):
@@ -23,7 +23,9 @@ class Usage(ProgramTest):
         scene = self.write("scene.toml", FOURBAR)
         for arguments in ([], ["fly"], ["check"], ["run", scene, "--steps", "0"], ["run", scene, "--duration", "-1"],
                           ["run", scene, "--lcm", "memq://", "--log", "x.lcm"],
-                          ["run", scene, "--json", "--csv", "-"]):
+                          ["run", scene, "--json", "--csv", "-"], ["modes"], ["modes", scene, "--time", "inf"],
+                          ["modes", scene, "--most", "0"], ["explain", scene, "--flow", "flow.png"],
+                          ["explain", scene, "--flow", ".svg"]):
             with self.subTest(arguments=arguments):
                 result = self.expect(USAGE, "koppel", *arguments)
                 self.assertEqual(result.stdout, "")
@@ -41,7 +43,7 @@ class Usage(ProgramTest):
 
     def test_an_empty_name_is_wrong_usage(self):
         scene = self.write("scene.toml", FOURBAR)
-        for arguments in (["check", ""], ["explain", ""], ["run", ""], ["run", scene, "--csv", ""],
+        for arguments in (["check", ""], ["explain", ""], ["modes", ""], ["run", ""], ["run", scene, "--csv", ""],
                           ["run", scene, "--log", ""], ["run", scene, "--lcm", ""], ["run", scene, "--name", ""]):
             with self.subTest(arguments=arguments):
                 self.assertIn("must not be empty", self.expect(USAGE, "koppel", *arguments).stderr)

@@ -19,12 +19,13 @@ class Scene(ProgramTest):
 
 class Commands(ProgramTest):
     def test_every_option_shown_exists(self):
-        shown = set(re.findall(r"koppel run [^\n#|`]*", README))
-        self.assertTrue(shown)
-        known = self.expect(FINE, "koppel", "run", "--help").stdout
-        for line in shown:
-            for option in re.findall(r"--[a-z]+", line):
-                self.assertIn(option, known)
+        for command in ("explain", "modes", "run"):
+            shown = set(re.findall(rf"koppel {command} [^\n#|`]*", README))
+            self.assertTrue(shown)
+            known = self.expect(FINE, "koppel", command, "--help").stdout
+            for line in shown:
+                for option in re.findall(r"--[a-z-]+", line):
+                    self.assertIn(option, known)
 
     def test_every_code_shown_is_explained(self):
         codes = re.findall(r"koppel explain ([EWN]\d+)", README)
@@ -32,11 +33,22 @@ class Commands(ProgramTest):
         for code in codes:
             self.assertNotEqual(self.expect(FINE, "koppel", "explain", code).stdout, "")
 
+    def test_what_is_shown_is_printed(self):
+        shown = re.findall(r"^```\n\$ koppel ([^\n]*)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
+        self.assertTrue(shown)
+        for arguments, text in shown:
+            words = [ROOT / word if word.startswith("apps/") else word for word in arguments.split()]
+            printed = self.expect(FINE, "koppel", *words).stdout
+            # Residuals are rounding: another machine has others.
+            for pattern in (r"\d\.\de[+-]\d\d", r" +$"):
+                printed, text = re.sub(pattern, "", printed), re.sub(pattern, "", text)
+            self.assertEqual(printed, text)
+
     def test_the_table_of_json_keys_is_complete(self):
         scene = self.write("fourbar.toml", FOURBAR)
         rows = re.findall(r"^\| (`.*) \| (.*) \| .* \|$", README, re.MULTILINE)
-        for name in ("check", "run"):
-            told = {key for keys, of in rows if of in ("both", f"`{name}`") for key in re.findall(r"`(\w+)`", keys)}
+        for name, groups in (("check", ("all", "both")), ("run", ("all", "both")), ("modes", ("all",))):
+            told = {key for keys, of in rows if of in (*groups, f"`{name}`") for key in re.findall(r"`(\w+)`", keys)}
             self.assertEqual(set(self.json(FINE, name, scene)) - told, set())
 
 

@@ -340,6 +340,62 @@ KOPPEL_EXPORT koppel_status koppel_find_freedoms(const koppel_state* state, kopp
 KOPPEL_EXPORT koppel_status koppel_explain_freedoms(const koppel_state* state, koppel_work* work, char* text,
                                                     size_t size, size_t* needed);
 
+/* ------------------------------------------------------------------------------------------------ flow and modes */
+
+enum { KOPPEL_FLOW_TEXT = 0, KOPPEL_FLOW_DOT = 1 };
+
+/* The solution flow for the mechanism's inputs: the loops, where each is cut, and in which order and how the
+ * coordinates follow from the inputs; depends on measures only, not on a position. TEXT: a page of text. DOT: a block
+ * diagram in the language of Graphviz. Planned anew in every call. */
+KOPPEL_EXPORT koppel_status koppel_flow_explain(const koppel_mechanism* mechanism, int32_t format, char* text,
+                                                size_t size, size_t* needed);
+
+typedef struct koppel_modes koppel_modes; /* assembly modes that were found; never changes */
+
+typedef struct koppel_modes_options {
+  uint32_t struct_size;
+  int32_t all_twins; /* 1: list every position of links that turn over unnoticed, not only if there is one such link */
+  uint64_t most;     /* modes; the search ends there. 0: 4096 */
+  uint64_t restarts; /* random starts where there is no other way. 0: 2000 */
+  /* Called now and then, by the thread that searches, with the modes found and the part done (0 to 1): other than 0
+   * stops the search, and what was found is kept. Must not call the library with the same state or work. NULL: none. */
+  int32_t (*progress)(size_t found, double part, void* user);
+  void* user;
+} koppel_modes_options;
+
+typedef struct koppel_modes_summary {
+  uint32_t struct_size;
+  int32_t complete; /* 1: there are no others. With count 0: the inputs are out of reach */
+  uint64_t count;
+  uint64_t twins;   /* how many positions each mode stands for: links that turn over unnoticed. 1 if all are listed */
+  double missed_by; /* without a mode: how far a condition stays open at best, scaled by the length; 0: not known */
+} koppel_modes_summary;
+
+typedef struct koppel_mode {
+  uint32_t struct_size;
+  int32_t limit;   /* 1: two modes meet here, or nearly */
+  double residual; /* greatest equation, metres divided by the scene's length, radians as they are */
+} koppel_mode;
+
+/* Finds all closed positions for the state's inputs; what no input determines stays as it is in the state, which need
+ * not be closed. None found is no failure. options: NULL for defaults. The modes belong to the caller. PLUGIN: a plugin
+ * failed. */
+KOPPEL_EXPORT koppel_status koppel_modes_find(const koppel_state* state, koppel_work* work,
+                                              const koppel_modes_options* options, koppel_modes** modes,
+                                              koppel_error* error);
+KOPPEL_EXPORT void koppel_modes_destroy(koppel_modes* modes);
+KOPPEL_EXPORT koppel_status koppel_modes_summarise(const koppel_modes* modes, koppel_modes_summary* summary);
+/* How it is known that there are no others, or why it is not: a line of text. */
+KOPPEL_EXPORT koppel_status koppel_modes_why(const koppel_modes* modes, char* text, size_t size, size_t* needed);
+/* index: below count. */
+KOPPEL_EXPORT koppel_status koppel_modes_get(const koppel_modes* modes, size_t index, koppel_mode* mode);
+/* Its branch, as "1.2.1": which solution was taken in each step of the flow that has several. */
+KOPPEL_EXPORT koppel_status koppel_modes_id(const koppel_modes* modes, size_t index, char* text, size_t size,
+                                            size_t* needed);
+/* Puts a state of the same mechanism there, as a start for koppel_close, which confirms it if the state still has the
+ * time and the inputs of the search. */
+KOPPEL_EXPORT koppel_status koppel_modes_take(const koppel_modes* modes, size_t index, koppel_state* state);
+
 /* ------------------------------------------------------------------------------------------------ results */
 
 /* what: KOPPEL_KIND_BODY or KOPPEL_KIND_FRAME. poses: 12 numbers each, in the world, of all `bodies` or all `frames`.

@@ -6,9 +6,10 @@ Units are SI, angles radians. A Mechanism never changes and may be used by many 
 from .engine import Engine, Scene, load
 from .error import Error, Finding
 from .mechanism import Mechanism
+from .modes import Mode, Modes
 from .run import run
 from .state import Analysis, Freedoms, Report, State
 from .stream import Statistics, Stream
 
-__all__ = ["Analysis", "Engine", "Error", "Finding", "Freedoms", "Mechanism", "Report", "Scene", "State", "Statistics", "Stream",
-           "load", "run"]
+__all__ = ["Analysis", "Engine", "Error", "Finding", "Freedoms", "Mechanism", "Mode", "Modes", "Report", "Scene", "State",
+           "Statistics", "Stream", "load", "run"]

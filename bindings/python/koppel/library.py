@@ -57,6 +57,14 @@ _ARGUMENTS = {
     "koppel_analyse": (_HANDLE, _HANDLE, c.POINTER(structs.Analysis), _ERROR),
     "koppel_find_freedoms": (_HANDLE, _HANDLE, c.POINTER(structs.Freedoms), _ERROR),
     "koppel_explain_freedoms": (_HANDLE, _HANDLE, *_TEXT),
+    "koppel_flow_explain": (_HANDLE, c.c_int32, *_TEXT),
+    "koppel_modes_find": (_HANDLE, _HANDLE, c.POINTER(structs.ModesOptions), _OUT, _ERROR),
+    "koppel_modes_destroy": (_HANDLE,),
+    "koppel_modes_summarise": (_HANDLE, c.POINTER(structs.ModesSummary)),
+    "koppel_modes_why": (_HANDLE, *_TEXT),
+    "koppel_modes_get": (_HANDLE, c.c_size_t, c.POINTER(structs.Mode)),
+    "koppel_modes_id": (_HANDLE, c.c_size_t, *_TEXT),
+    "koppel_modes_take": (_HANDLE, c.c_size_t, _HANDLE),
     "koppel_poses": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
     "koppel_twists": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
     "koppel_frame_accelerations": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
@@ -71,6 +79,7 @@ _RESULTS = {
     "koppel_library_version": structs.Version, "koppel_diagnostics_count": c.c_size_t, "koppel_state_time": c.c_double,
     "koppel_engine_destroy": None, "koppel_diagnostics_destroy": None, "koppel_scene_destroy": None,
     "koppel_mechanism_destroy": None, "koppel_state_destroy": None, "koppel_work_destroy": None,
+    "koppel_modes_destroy": None,
 }
 
 

@@ -55,6 +55,11 @@ class Mechanism(Handle):
         """What was built, how each loop is cut, equations and unknowns: a page of text."""
         return text("koppel_mechanism_explain", self.handle)
 
+    def flow(self, format="text"):
+        """In which order and how the coordinates follow from the inputs: a page of text, or a block diagram in the
+        language of Graphviz (format "dot")."""
+        return text("koppel_flow_explain", self.handle, structs.FLOWS.index(format))
+
     def state(self):
         """A new State at time 0, not closed yet."""
         return State(self)

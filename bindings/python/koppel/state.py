@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy
 
-from . import structs
+from . import modes, structs
 from .library import Handle, call, call_plain, library, numbers, pointer, text
 
 
@@ -177,6 +177,13 @@ class State(Handle):
     def explain_freedoms(self):
         """The same as a page of text, with the names of bodies and joints."""
         return text("koppel_explain_freedoms", self.handle, self.work.handle)
+
+    def modes(self, most=0, all_twins=False, restarts=0, progress=None):
+        """All closed positions for the inputs as they are: Modes. The state stays as it is; what no input determines is
+        taken from it. most: where the search ends (0: 4096). all_twins: list every position of links that turn over
+        unnoticed. restarts: random starts where there is no other way (0: 2000). progress(found, part): called now and
+        then with the number found and the part done; False stops the search."""
+        return modes.find(self, most, all_twins, restarts, progress)
 
     def poses(self, kind="body"):
         """(bodies or frames, 3, 4): rotation matrix and, as last column, position in the world [m]."""

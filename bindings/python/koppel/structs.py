@@ -17,6 +17,7 @@ Q, V, A = 1, 2, 3
 VERDICTS = ("open", "closed", "not found", "retry", "limit")
 SOLVERS = ("none", "newton", "ceres")
 METHODS = ("auto", "newton", "ceres")
+FLOWS = ("text", "dot")
 
 
 class Version(c.Structure):
@@ -79,6 +80,23 @@ class Freedoms(Sized):
                 ("mobility_nearby", c.c_int32), ("redundant_here", c.c_uint32), ("redundant_nearby", c.c_uint32),
                 ("planar_loops", c.c_uint32), ("spherical_loops", c.c_uint32), ("isolated", c.c_uint32),
                 ("indeterminate", c.c_uint32), ("shaky", c.c_int32)]
+
+
+PROGRESS = c.CFUNCTYPE(c.c_int32, c.c_size_t, c.c_double, c.c_void_p)
+
+
+class ModesOptions(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("all_twins", c.c_int32), ("most", c.c_uint64), ("restarts", c.c_uint64),
+                ("progress", PROGRESS), ("user", c.c_void_p)]
+
+
+class ModesSummary(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("complete", c.c_int32), ("count", c.c_uint64), ("twins", c.c_uint64),
+                ("missed_by", c.c_double)]
+
+
+class Mode(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("limit", c.c_int32), ("residual", c.c_double)]
 
 
 class StreamOptions(Sized):

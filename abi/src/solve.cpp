@@ -62,23 +62,21 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, do
         explain_limit(m, *report, time, e);
         break;
       }
-      if (report != nullptr && report->verdict == koppel::Verdict::unreachable) {
-        e.code = Code::unreachable;
-        e.message = "at time " + number(time) +
-                    " s the inputs leave the mechanism no closed position at all: every "
-                    "solution of its equations is known, and none is real";
-        e.advice = "check lengths and inputs; `koppel modes --time` shows at which times there are positions";
-        break;
-      }
-      e.code = status == KOPPEL_RETRY ? Code::retry_smaller : Code::not_closed;
-      e.message = "no closed position found at time " + number(time) + " s";
+      const bool unreachable = report != nullptr && report->verdict == koppel::Verdict::unreachable;
+      e.code = unreachable ? Code::unreachable : status == KOPPEL_RETRY ? Code::retry_smaller : Code::not_closed;
+      e.message = unreachable ? "there is no closed position at time " + number(time) +
+                                    " s: all solutions of the closure equations are known, and none is real"
+                              : "no closed position found at time " + number(time) + " s";
       if (report != nullptr && std::isfinite(report->residual) && report->open_row < m.equation_names.size()) {
-        e.message += ": `" + m.equation_names[report->open_row].name + "` stays open by " + number(report->residual) +
-                     " (radians, or metres over the length " + number(m.length) + " m)";
+        e.message += std::string(unreachable ? "; at best" : ":") + " `" + m.equation_names[report->open_row].name +
+                     "` stays open by " + number(report->residual) + " (radians, or metres over the length " +
+                     number(m.length) + " m)";
       }
-      e.advice = status == KOPPEL_RETRY ? "move the inputs in smaller steps"
-                                        : "give `start` values near a known position, or check lengths and inputs: the "
-                                          "mechanism may not reach this position";
+      e.advice = unreachable ? "change the inputs or the lengths; `koppel modes --time` shows when there are positions"
+                 : status == KOPPEL_RETRY
+                     ? "move the inputs in smaller steps"
+                     : "give `start` values near a known position, or check lengths and inputs: the "
+                       "mechanism may not reach this position";
       break;
     }
     case KOPPEL_SINGULAR:

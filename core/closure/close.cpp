@@ -20,14 +20,20 @@ bool inputs_taken(const Mechanism& mechanism, const State& state) {
   return true;
 }
 
-/// Rates and accelerations of the state still belong to its inputs.
-bool rates_taken(const Mechanism& mechanism, const State& state) {
+/// Rates of the state still belong to its inputs.
+bool velocities_taken(const Mechanism& mechanism, const State& state) {
   for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    const std::uint32_t v = mechanism.inputs[i].v;
-    if (state.v[v] != state.input_rate[k] || state.a[v] != state.input_acceleration[k]) return false;
+    if (state.v[mechanism.inputs[i].v] != state.input_rate[static_cast<Eigen::Index>(i)]) return false;
   }
   return true;
+}
+
+/// Rates and accelerations do.
+bool rates_taken(const Mechanism& mechanism, const State& state) {
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    if (state.a[mechanism.inputs[i].v] != state.input_acceleration[static_cast<Eigen::Index>(i)]) return false;
+  }
+  return velocities_taken(mechanism, state);
 }
 
 /// The position is closed for the inputs and the time that the state has now.
@@ -170,6 +176,7 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
   }
   const koppel_status status = describe(work, report);
   remember(state);
+  state.history.sides[0] = 0;
   state.history.rank = report.rank;
   state.history.weakest = work.condition.smallest;
   state.q = work.q;
@@ -180,6 +187,8 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
 koppel_status velocities(Work& work, State& state) {
   const Mechanism& mechanism = *work.mechanism;
   if (!closed_here(mechanism, state)) return KOPPEL_INVALID_ARGUMENT;
+  // What is known stays as it is.
+  if (state.stage >= Stage::velocities && velocities_taken(mechanism, state)) return KOPPEL_OK;
   if (!factorise_at(work, state.q, state.time)) return KOPPEL_PLUGIN;
   Eigen::VectorXd& v = work.delta;
   v.setZero();
@@ -203,6 +212,7 @@ koppel_status accelerations(Work& work, State& state) {
     const double asked = state.input_rate[static_cast<Eigen::Index>(i)];
     if (state.v[mechanism.inputs[i].v] != asked) return KOPPEL_INVALID_ARGUMENT;
   }
+  if (state.stage == Stage::accelerations && rates_taken(mechanism, state)) return KOPPEL_OK;
   if (!factorise_at(work, state.q, state.time)) return KOPPEL_PLUGIN;
   Eigen::VectorXd& a = work.delta;
   a.setZero();
@@ -252,11 +262,17 @@ std::optional<koppel_status> track(Work& work, State& state, Report& report) {
     work.v[mechanism.inputs[i].v] = state.input_rate[k];
     work.a[mechanism.inputs[i].v] = state.input_acceleration[k];
   }
+  if (state.history.sides[0] == 0) tracker->find_sides(state.q, state.history.sides);
   TrackedAccuracy accuracy;
-  if (!tracker->follow(work.q, work.v, work.a, accuracy)) return std::nullopt;
+  if (!tracker->follow(work.q, work.v, work.a, state.history.sides, accuracy)) return std::nullopt;
   remember(state);
   state.history.weakest = 0.0;  // not known
   state.q = work.q;
+  if (!tracker->regular_rank) {
+    if (!factorise_at(work, state.q, state.time)) return KOPPEL_PLUGIN;
+    tracker->regular_rank = static_cast<std::uint32_t>(work.factorisation.rank());
+  }
+  state.history.rank = *tracker->regular_rank;
   state.v = work.v;
   state.a = work.a;
   report.verdict = Verdict::closed;

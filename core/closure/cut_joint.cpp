@@ -13,12 +13,21 @@ namespace {
 const double tolerance = std::sqrt(std::numeric_limits<double>::epsilon());
 constexpr std::size_t largest_run = 3;
 
+/// Whether a sine, or a distance over the length, counts as nothing; doubtful if it is more than rounding all the same.
+bool nothing(double x, bool& doubtful) {
+  constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
+  if (x > tolerance) return false;
+  doubtful = doubtful || x > rounding;
+  return true;
+}
+
 /// A run of motions where all coordinates are zero, seen from the frame before it.
 struct Run {
   std::array<VariableKind, largest_run> kinds{};
   std::array<Vector3, largest_run> axes, points;
   std::size_t count = 0;
-  Pose end;  ///< of the frame after the last motion
+  Pose end;                       ///< of the frame after the last motion
+  mutable bool doubtful = false;  ///< something of it is nothing only to half the digits
 
   bool all(VariableKind kind) const {
     for (std::size_t i = 0; i < count; ++i) {
@@ -57,14 +66,16 @@ Run run_of(const Loop& loop, std::span<const Variable> variables, std::size_t fi
   return run;
 }
 
-bool parallel(const Vector3& a, const Vector3& b) { return a.cross(b).norm() <= tolerance; }
+bool parallel(const Run& run, const Vector3& a, const Vector3& b) { return nothing(a.cross(b).norm(), run.doubtful); }
 
 /// The point in which two axes cross; nothing if they are parallel or pass each other.
 std::optional<Vector3> crossing(const Run& run, std::size_t i, std::size_t j, double length) {
   const Vector3 &u = run.axes[i], &w = run.axes[j];
   const Vector3 normal = u.cross(w), apart = run.points[j] - run.points[i];
   const double sine = normal.norm();
-  if (sine <= tolerance || std::abs(apart.dot(normal)) > tolerance * sine * length) return std::nullopt;
+  if (nothing(sine, run.doubtful) || !nothing(std::abs(apart.dot(normal)) / (sine * length), run.doubtful)) {
+    return std::nullopt;
+  }
   return run.points[i] + apart.cross(w).dot(normal) / (sine * sine) * u;
 }
 
@@ -72,8 +83,8 @@ std::optional<Vector3> crossing(const Run& run, std::size_t i, std::size_t j, do
 std::optional<Vector3> common_point(const Run& run, double length) {
   const auto point = crossing(run, 0, 1, length);
   if (!point || run.count == 2) return point;
-  if (parallel(run.axes[1], run.axes[2])) return std::nullopt;
-  if (run.axes[2].cross(*point - run.points[2]).norm() > tolerance * length) return std::nullopt;
+  if (parallel(run, run.axes[1], run.axes[2])) return std::nullopt;
+  if (!nothing(run.axes[2].cross(*point - run.points[2]).norm() / length, run.doubtful)) return std::nullopt;
   return point;
 }
 
@@ -82,12 +93,12 @@ Vector3 plane_normal(const Run& run) {
   Vector3 normal = Vector3::Zero();
   if (run.turns() > 0) {
     normal = run.axes[run.first_turn()];
-  } else if (!parallel(run.axes[0], run.axes[1])) {
+  } else if (!parallel(run, run.axes[0], run.axes[1])) {
     normal = run.axes[0].cross(run.axes[1]).normalized();
   }
   for (std::size_t i = 0; i < run.count; ++i) {
-    const bool fits = run.kinds[i] == VariableKind::turn ? parallel(run.axes[i], normal)
-                                                         : std::abs(run.axes[i].dot(normal)) <= tolerance;
+    const bool fits = run.kinds[i] == VariableKind::turn ? parallel(run, run.axes[i], normal)
+                                                         : nothing(std::abs(run.axes[i].dot(normal)), run.doubtful);
     if (!fits) return Vector3::Zero();
   }
   return normal;
@@ -97,10 +108,10 @@ Vector3 plane_normal(const Run& run) {
 bool full_plane(const Run& run, double length) {
   for (std::size_t i = 0; i + 1 < run.count; ++i) {
     const bool slides = run.kinds[i] == VariableKind::slide && run.kinds[i + 1] == VariableKind::slide;
-    if (slides && parallel(run.axes[i], run.axes[i + 1])) return false;
+    if (slides && parallel(run, run.axes[i], run.axes[i + 1])) return false;
     const bool turns = run.kinds[i] == VariableKind::turn && run.kinds[i + 1] == VariableKind::turn;
     const Vector3 apart = run.points[i + 1] - run.points[i];
-    if (turns && run.axes[i].cross(apart).norm() <= tolerance * length) return false;
+    if (turns && nothing(run.axes[i].cross(apart).norm() / length, run.doubtful)) return false;
   }
   return run.turns() > 0;
 }
@@ -128,7 +139,7 @@ std::optional<CutJoint> of_one(const Run& run) {
 }
 
 std::optional<CutJoint> of_cylinder(const Run& run) {
-  if (run.turns() != 1 || !parallel(run.axes[0], run.axes[1])) return std::nullopt;
+  if (run.turns() != 1 || !parallel(run, run.axes[0], run.axes[1])) return std::nullopt;
   const std::size_t turn = run.first_turn();
   return made(CutShape::cylinder, 2, run, frame(run.axes[turn], run.points[turn]));
 }
@@ -136,7 +147,7 @@ std::optional<CutJoint> of_cylinder(const Run& run) {
 }  // namespace
 
 std::optional<CutJoint> cut_joint(const Loop& loop, std::span<const Variable> variables, std::size_t first,
-                                  std::size_t count, double length) {
+                                  std::size_t count, double length, bool* doubtful) {
   if (count == 0 || count > std::min(largest_run, loop.motions.size())) return std::nullopt;
   const Run run = run_of(loop, variables, first, count);
   std::optional<CutJoint> found;
@@ -159,6 +170,7 @@ std::optional<CutJoint> cut_joint(const Loop& loop, std::span<const Variable> va
     }
   }
   if (found) found->first = first;
+  if (doubtful != nullptr) *doubtful = *doubtful || run.doubtful;
   return found;
 }
 

@@ -34,8 +34,9 @@ struct CutJoint {
 };
 
 /// The joint that `count` motions of the loop make, from number `first` on; nothing if they make none. `length` [m] is
-/// the mechanism's: axes count as crossing or parallel to half the digits.
+/// the mechanism's: axes count as crossing or parallel to half the digits. `doubtful`, if given, is set where that is
+/// more than rounding: the joint is then nearly what it is taken for, or nearly another one.
 std::optional<CutJoint> cut_joint(const Loop& loop, std::span<const Variable> variables, std::size_t first,
-                                  std::size_t count, double length);
+                                  std::size_t count, double length, bool* doubtful = nullptr);
 
 }  // namespace koppel

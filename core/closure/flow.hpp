@@ -48,6 +48,8 @@ struct Flow {
   std::vector<std::uint32_t> outside;  ///< variables of joints that are in no loop
   std::vector<LoopCut> cuts;
   std::vector<FlowStep> steps;
+  /// Axes that are taken for parallel or meeting are so only to half the digits: a solution may have been overlooked.
+  bool doubtful = false;
   std::string obstacle;  ///< why there is no flow; empty if there is one
 
   bool in_closed_form() const;

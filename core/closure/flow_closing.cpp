@@ -9,6 +9,7 @@ FlowOutcome close_by_flow(Work& work, const State& state, Report& report) {
   ModeOptions options;
   options.most = 1;
   options.nearest_first = true;
+  options.restarts = 200;
   Modes modes;
   if (!find_modes(work, state, options, modes)) return FlowOutcome::plugin_failed;
   if (modes.modes.empty()) return modes.complete ? FlowOutcome::unreachable : FlowOutcome::unknown;

@@ -13,7 +13,8 @@ namespace koppel {
 namespace {
 
 const double tolerance = std::sqrt(std::numeric_limits<double>::epsilon());
-constexpr int trials = 3;  // random positions: a derivative that vanishes at all of them vanishes everywhere
+constexpr double rounding = 1e-12;  // of derivatives: some thousand units
+constexpr int trials = 3;           // random positions: a derivative that vanishes at all of them vanishes everywhere
 constexpr std::size_t longest_run = 3;
 
 std::vector<Place<double>> random_places(std::span<const Variable> variables, double length, std::mt19937_64& random) {
@@ -130,7 +131,8 @@ std::vector<CutJoint> FlowPlan::cut_joints(std::uint32_t index) const {
   for (std::size_t first = 0; first < n; ++first) {
     for (std::size_t count = 1; count <= std::min(longest_run, n); ++count) {
       if (known_[loop.motions[(first + count - 1) % n].variable]) break;
-      if (auto joint = cut_joint(loop, flow_.loops.variables, first, count, flow_.length)) result.push_back(*joint);
+      if (auto joint = cut_joint(loop, flow_.loops.variables, first, count, flow_.length, &flow_.doubtful))
+        result.push_back(*joint);
     }
   }
   return result;
@@ -170,8 +172,11 @@ std::vector<std::vector<std::uint32_t>> FlowPlan::entering(const LoopCut& cut, P
         const bool slide = variables[column.variable].kind == VariableKind::slide;
         for (std::size_t k = 0; k < cut.conditions.size(); ++k) {
           const double rate = change(cut.conditions[k], a_in_b, column.angular, linear) * (slide ? flow_.length : 1.0);
-          if (std::abs(rate) > tolerance * size_of(cut.conditions[k], flow_.length)) {
+          const double relative = std::abs(rate) / size_of(cut.conditions[k], flow_.length);
+          if (relative > tolerance) {
             insert_sorted(result[k], column.variable);
+          } else if (relative > rounding) {
+            flow_.doubtful = true;
           }
         }
       }
@@ -440,6 +445,8 @@ bool FlowPlan::take_spin() {
     const std::vector<CutJoint> joints = cut_joints(index);
     const Variables unknown = unknown_in(index);
     if (unknown.size() != 2 || joints.size() != 2 || freedoms(unknown) != 6) continue;
+    // Another loop that passes one of the balls may tell how the link is turned.
+    if (shared(unknown[0], index) || shared(unknown[1], index)) continue;
     const Loop& loop = flow_.loops.loops[index];
     FlowStep step;
     step.kind = StepKind::spin;

@@ -96,7 +96,21 @@ void FlowTracker::compile_joint(const Flow& flow, const FlowStep& from, Step& st
   }
 }
 
-bool FlowTracker::follow(Eigen::VectorXd& q, Eigen::VectorXd& v, Eigen::VectorXd& a, TrackedAccuracy& accuracy) {
+void FlowTracker::find_sides(const Eigen::VectorXd& q, Sides& sides) {
+  Eigen::VectorXd copy = q;
+  q_ = &copy;
+  for (std::uint32_t i = 0; i < variables_.size(); ++i) {
+    if (variables_[i].kind == VariableKind::ball) {
+      std::copy_n(q.data() + variables_[i].q, 4, places_[i].at.begin());
+    } else {
+      place(i, q[variables_[i].q]);
+    }
+  }
+  for (std::size_t i = 0; i < steps_.size(); ++i) sides[i] = side_of(steps_[i]);
+}
+
+bool FlowTracker::follow(Eigen::VectorXd& q, Eigen::VectorXd& v, Eigen::VectorXd& a, const Sides& sides,
+                         TrackedAccuracy& accuracy) {
   q_ = &q;
   v_ = &v;
   a_ = &a;
@@ -107,13 +121,14 @@ bool FlowTracker::follow(Eigen::VectorXd& q, Eigen::VectorXd& v, Eigen::VectorXd
     set_motion(input, v[variable.v], a[variable.v]);
     errors_[input] = 0.0;
   }
-  for (const Step& step : steps_) {
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const Step& step = steps_[i];
     switch (step.kind) {
       case StepKind::one_unknown:
-        if (!solve_one(step)) return false;
+        if (!solve_one(step, sides[i])) return false;
         break;
       case StepKind::two_unknowns:
-        if (!solve_two(step)) return false;
+        if (!solve_two(step, sides[i])) return false;
         break;
       case StepKind::joint: read_joint(step); break;
       case StepKind::spin:

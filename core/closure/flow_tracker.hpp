@@ -3,6 +3,7 @@
 // closed form the solution is taken that continues the motion.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -29,10 +30,20 @@ class FlowTracker {
   /// freedoms.
   static std::optional<FlowTracker> of(const Mechanism& mechanism, const Flow& flow);
 
+  /// On which side of its singular positions each step stands in a closed position: the sign of the slope that it
+  /// divides by, and the number of the condition that has it. Between two positions of one side, none was passed.
+  using Sides = std::vector<std::int8_t>;
+  void find_sides(const Eigen::VectorXd& q, Sides& sides);
+
   /// q: start values near the solution, with the inputs at their targets; v and a: those of the inputs. All are
-  /// completed. False: near a singular position, or the solution that continues the motion is not certain; q, v and a
-  /// are spoilt then.
-  bool follow(Eigen::VectorXd& q, Eigen::VectorXd& v, Eigen::VectorXd& a, TrackedAccuracy& accuracy);
+  /// completed. sides: of the position that the motion comes from. False: near a singular position or past one, or the
+  /// solution that continues the motion is not certain; q, v and a are spoilt then.
+  bool follow(Eigen::VectorXd& q, Eigen::VectorXd& v, Eigen::VectorXd& a, const Sides& sides,
+              TrackedAccuracy& accuracy);
+
+  /// Of the closure's equations where the mechanism is not singular; for whoever follows, who finds it at the first
+  /// position that the tracker has reached.
+  std::optional<std::uint32_t> regular_rank;
 
  private:
   /// A condition: written out if few coordinates enter it, walked along if not.
@@ -55,12 +66,15 @@ class FlowTracker {
   bool compile(const Flow& flow, const FlowStep& from, Step& step) const;
   void compile_joint(const Flow& flow, const FlowStep& from, Step& step) const;
 
-  bool solve_one(const Step& step);
+  bool solve_one(const Step& step, std::int8_t side);
   bool solve_turn(const LastVariable& form, std::uint32_t variable);
   bool solve_slide(const LastVariable& form, std::uint32_t variable);
   bool solve_form(const Row& row, std::uint32_t variable);
   bool solve_walk(const Row& row, std::uint32_t variable);
-  bool solve_two(const Step& step);
+  bool solve_two(const Step& step, std::int8_t side);
+  std::int8_t side_of(const Step& step);
+  Eigen::Matrix2d jacobian_of(const Step& step) const;
+  std::size_t steepest(const Step& step);
   void read_joint(const Step& step);
   void read_ball(const MovingPose& before, bool inverse, std::uint32_t variable);
 

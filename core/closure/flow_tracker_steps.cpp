@@ -37,11 +37,12 @@ double FlowTracker::error_through(const ProductForm& form, std::uint32_t unknown
   return sum / std::abs(slope);
 }
 
-/// Of a condition that is walked along, or of a pose: in lengths and radians nothing enters with more than its size.
+/// Of a condition that is walked along, or of a pose: rounding on the way, and what the worst of the given coordinates
+/// leaves. Their errors have common causes, so that they do not add up.
 double FlowTracker::error_of(const Step& step) const {
-  double error = 8.0 * eps;
-  for (const std::uint32_t v : step.given) error += errors_[v];
-  return error;
+  double worst = 0.0;
+  for (const std::uint32_t v : step.given) worst = std::max(worst, errors_[v]);
+  return 8.0 * eps * static_cast<double>(1 + step.given.size()) + 2.0 * worst;
 }
 
 /// The condition's slope in a variable where that is placed, in radians or lengths.
@@ -57,25 +58,47 @@ double FlowTracker::slope(const Row& row, std::uint32_t variable) {
           change(row.condition, upper.pose, upper.angular, upper.linear));
 }
 
-bool FlowTracker::solve_one(const Step& step) {
+/// Of several conditions that agree the one that is steepest where its unknown is placed.
+std::size_t FlowTracker::steepest(const Step& step) {
+  std::size_t best = 0;
+  double greatest = -1.0;
+  for (std::size_t k = 0; k < step.rows.size() && step.rows.size() > 1; ++k) {
+    const double size = std::abs(slope(step.rows[k], step.unknowns[0]));
+    if (size <= greatest) continue;
+    greatest = size;
+    best = k;
+  }
+  return best;
+}
+
+std::int8_t FlowTracker::side_of(const Step& step) {
+  const auto coded = [](double x, std::size_t row) {
+    const auto number = static_cast<std::int8_t>(row + 1);
+    return x < 0.0 ? static_cast<std::int8_t>(-number) : number;
+  };
+  switch (step.kind) {
+    case StepKind::one_unknown: {
+      const std::size_t row = steepest(step);
+      return coded(slope(step.rows[row], step.unknowns[0]), row);
+    }
+    case StepKind::two_unknowns: return coded(jacobian_of(step).determinant(), 0);
+    case StepKind::joint:
+    case StepKind::spin:
+    case StepKind::numerical: break;
+  }
+  return 1;
+}
+
+bool FlowTracker::solve_one(const Step& step, std::int8_t side) {
   const std::uint32_t x = step.unknowns[0];
   place(x, (*q_)[variables_[x].q]);
-  // Of several conditions that agree the one that is steepest at the start.
-  const Row* best = &step.rows[0];
-  if (step.rows.size() > 1) {
-    double steepest = -1.0;
-    for (const Row& row : step.rows) {
-      const double size = std::abs(slope(row, x));
-      if (size <= steepest) continue;
-      steepest = size;
-      best = &row;
-    }
-  }
+  // The one that was steepest when the motion came here: another would have sides of its own.
+  const Row& best = step.rows[static_cast<std::size_t>(std::abs(side)) - 1];
   errors_[x] = 0.0;
-  if (best->form) return solve_form(*best, x);
-  if (!solve_walk(*best, x)) return false;
-  take_error(x, error_of(step) / std::abs(slope(*best, x)));
-  return true;
+  if (!(best.form ? solve_form(best, x) : solve_walk(best, x))) return false;
+  const double slope_here = slope(best, x);
+  if (!best.form) take_error(x, error_of(step) / std::abs(slope_here));
+  return (slope_here < 0.0) == (side < 0);
 }
 
 bool FlowTracker::solve_form(const Row& row, std::uint32_t x) {
@@ -172,8 +195,24 @@ bool FlowTracker::solve_walk(const Row& row, std::uint32_t x) {
   return true;
 }
 
+/// Of two conditions by their unknowns, in radians or lengths.
+Eigen::Matrix2d FlowTracker::jacobian_of(const Step& step) const {
+  Eigen::Matrix2d jacobian;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto names = step.rows[k].form->variables();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::uint32_t x = step.unknowns[i];
+      const double unit = variables_[x].kind == VariableKind::slide ? length_ : 1.0;
+      const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), x) - names.begin());
+      jacobian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) =
+          at == names.size() ? 0.0 : unit * step.rows[k].form->by(at, bases_);
+    }
+  }
+  return jacobian;
+}
+
 /// Two conditions in two unknowns: Newton's method, and the rates by the same Jacobian.
-bool FlowTracker::solve_two(const Step& step) {
+bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
   const std::array<std::uint32_t, 2> x{step.unknowns[0], step.unknowns[1]};
   std::array<double, 2> unit{};
   Eigen::Matrix2d jacobian;
@@ -183,16 +222,7 @@ bool FlowTracker::solve_two(const Step& step) {
       open[static_cast<Eigen::Index>(k)] = step.rows[k].form->value(bases_)[derivative];
     }
   };
-  const auto linearise = [&] {
-    for (std::size_t k = 0; k < 2; ++k) {
-      const auto names = step.rows[k].form->variables();
-      for (std::size_t i = 0; i < 2; ++i) {
-        const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), x[i]) - names.begin());
-        jacobian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) =
-            at == names.size() ? 0.0 : unit[i] * step.rows[k].form->by(at, bases_);
-      }
-    }
-  };
+  const auto linearise = [&] { jacobian = jacobian_of(step); };
   for (std::size_t i = 0; i < 2; ++i) {
     unit[i] = variables_[x[i]].kind == VariableKind::slide ? length_ : 1.0;
     errors_[x[i]] = 0.0;
@@ -216,6 +246,7 @@ bool FlowTracker::solve_two(const Step& step) {
       place(x[k], (*q_)[variables_[x[k]].q] + unit[k] * change[static_cast<Eigen::Index>(k)]);
     }
   }
+  if ((jacobian.determinant() < 0.0) != (side < 0)) return false;
   const Eigen::Matrix2d inverse = jacobian.inverse();
   accuracy_.residual = std::max(accuracy_.residual, open.lpNorm<Eigen::Infinity>());
   accuracy_.condition = std::max(accuracy_.condition, jacobian.norm() * inverse.norm());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <random>
 
 #include "closure/flow_solver.hpp"
 #include "closure/newton.hpp"
@@ -38,7 +39,8 @@ class Search {
 
   /// False: a plugin failed.
   bool run() {
-    modes_.complete = true;
+    modes_.complete = !flow_.doubtful;
+    if (flow_.doubtful) step_why_ = "axes that are taken for parallel or meeting are so only nearly";
     const auto nq = static_cast<Eigen::Index>(work_.mechanism->nq);
     // Imaginary joints start where nothing has moved.
     Eigen::VectorXd q = Eigen::VectorXd::Zero(nq + 7 * static_cast<Eigen::Index>(flow_.loops.imaginary.size()));
@@ -163,8 +165,10 @@ class Search {
   void explain() {
     if (stopped_) {
       modes_.why = step_why_;
-    } else if (flow_.in_closed_form()) {
-      modes_.why = modes_.complete ? "every step of the flow is solved in closed form" : step_why_;
+    } else if (flow_.loops.loops.empty()) {
+      modes_.why = "there are no loops to close";
+    } else if (flow_.in_closed_form() && modes_.complete) {
+      modes_.why = "every step of the flow is solved in closed form";
     } else {
       modes_.why = step_why_;
     }
@@ -183,6 +187,35 @@ class Search {
   std::string step_why_;
 };
 
+/// The last resort: Newton's method from random starts, ever further away.
+bool restart(Work& work, const State& state, const ModeOptions& options, Modes& modes) {
+  const Mechanism& mechanism = *work.mechanism;
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> between(-1.0, 1.0);
+  for (std::size_t i = 0; i < options.restarts && modes.modes.size() < options.most; ++i) {
+    const double part = static_cast<double>(i) / static_cast<double>(options.restarts);
+    if (options.progress && !options.progress(modes.modes.size(), part)) break;
+    for (Eigen::Index k = 0; k < work.delta.size(); ++k) {
+      work.delta[k] = std::numbers::pi * part * between(random) * mechanism.rate_scale[static_cast<std::size_t>(k)];
+    }
+    integrate(mechanism, state.q, work.delta, work.q);
+    for (std::size_t k = 0; k < mechanism.inputs.size(); ++k) {
+      work.q[mechanism.inputs[k].q] = state.input[static_cast<Eigen::Index>(k)];
+    }
+    const NewtonResult result = newton(work, state.time, {});
+    // A plugin need not have an answer everywhere.
+    if (result.plugin_failed || !result.converged) continue;
+    if (!work.equations.cut_coordinates(work.q)) return false;
+    const bool known = std::any_of(modes.modes.begin(), modes.modes.end(), [&](const Mode& mode) {
+      return distance(mechanism, mode.q, work.q, work.delta) <= same;
+    });
+    if (known) continue;
+    modes.modes.push_back({std::to_string(modes.modes.size() + 1), work.q, work.equations.error(), false});
+  }
+  modes.why += ": only what Newton's method found from " + std::to_string(options.restarts) + " random starts";
+  return true;
+}
+
 }  // namespace
 
 bool find_modes(Work& work, const State& state, const ModeOptions& options, Modes& modes) {
@@ -190,7 +223,7 @@ bool find_modes(Work& work, const State& state, const ModeOptions& options, Mode
   const Flow flow = plan_flow(*work.mechanism);
   if (!flow.obstacle.empty()) {
     modes.why = flow.obstacle;
-    return true;
+    return restart(work, state, options, modes);
   }
   return Search(work, state, options, flow, modes).run();
 }

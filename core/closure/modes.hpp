@@ -42,8 +42,9 @@ struct ModeOptions {
 };
 
 /// Finds the modes with the inputs held at the state's values and everything that no input determines as it is in the
-/// state. The state need not be closed. Every mode is checked by the equations of closure, which the flow does not use,
-/// and taken to rounding by Newton's method. False: a plugin failed.
+/// state. The state need not be closed. A mechanism without a flow is tried from random starts. Every mode is checked
+/// by the equations of closure, which the flow does not use, and taken to rounding by Newton's method. False: a plugin
+/// failed.
 bool find_modes(Work& work, const State& state, const ModeOptions& options, Modes& modes);
 
 }  // namespace koppel

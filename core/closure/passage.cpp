@@ -220,6 +220,7 @@ koppel_status follow(Work& work, State& state, double duration, double speed, Br
   // Known across the curve, not along the unknowns alone: beside a change point from the branch, at a limit too.
   const double across = walk.place.beside_change_point ? 0.01 : walk.place.point.weakest;
   report.coordinate_error *= std::min(1.0, work.condition.smallest / across);
+  next.history.sides[0] = 0;
   next.history.rank = report.rank;
   next.history.weakest = work.condition.smallest;
   tell_passed(curve, walk, report);

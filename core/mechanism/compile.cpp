@@ -109,18 +109,22 @@ class Compiler {
 
   /// The largest distance between two joint frames on one body, unless the scene sets it.
   void take_length() {
-    double longest = 0.0;
+    double longest = 0.0, reach = 0.0;
     std::vector<std::vector<Vector3>> points(m().bodies.size());
     for (const Joint& joint : m().joints) {
       for (const Attachment* side : {&joint.inlet, &joint.outlet}) {
+        reach = std::max(reach, side->pose.position.norm());
         for (const Vector3& other : points[side->body.index()]) {
           longest = std::max(longest, (side->pose.position - other).norm());
         }
         points[side->body.index()].push_back(side->pose.position);
       }
     }
-    m().length = scene_.length.value_or(longest > 0.0 ? longest : 1.0);
-    if (!scene_.length && !(longest > 0.0)) {
+    // Joints that would be at one point but for the rounding of how it is written are no distance apart.
+    constexpr double rounding = 1e-12;
+    const bool apart = longest > rounding * reach;
+    m().length = scene_.length.value_or(apart ? longest : 1.0);
+    if (!scene_.length && !apart) {
       Error note = make_error(Code::no_length, "scene " + m().name,
                               "no two joints of a body are apart, so residuals in metres are taken as they are",
                               "set length in [scene] to the size of the mechanism");

@@ -27,6 +27,7 @@ State::State(const Mechanism& mechanism)
       input(mechanism.inputs.size()),
       input_rate(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mechanism.inputs.size()))),
       input_acceleration(input_rate) {
+  history.sides.assign(mechanism.nv + std::size_t{1}, 0);
   for (const StateBlock& block : mechanism.blocks) {
     const CoordinateDescription& about = described(mechanism, block);
     neutral_block(block.kind, q.data() + block.q);

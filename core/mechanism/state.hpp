@@ -1,6 +1,9 @@
 // Where a mechanism stands: plain numbers, copied and saved freely. All history that matters for the next step is here.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "mechanism/mechanism.hpp"
@@ -29,6 +32,8 @@ struct State {
     Eigen::VectorXd acceleration;  ///< nv, of the one before
     std::uint32_t rank = 0;        ///< of the closure's equations in the unknowns at the position in q
     double weakest = 0.0;          ///< singular value there that counts
+    /// On which side of the singular positions each step of the closed forms stands (see FlowTracker); 0: not known.
+    std::vector<std::int8_t> sides;
     double pace = 1.0;             ///< time of the drives by path parameter, of a state that follows its curve
   } history;
 };

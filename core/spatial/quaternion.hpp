@@ -58,7 +58,7 @@ inline Vector3T<T> rotated(const Vector4T<T>& q, const Vector3T<T>& v) {
 /// complex components the square of the length is the sum of their squares, so that the matrix is analytic in them.
 template <typename T>
 inline Matrix3T<T> rotation_of_quaternion(const Vector4T<T>& q) {
-  const T s = T(2) / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const T s = T(2) / ((q[0] * q[0] + q[2] * q[2]) + (q[1] * q[1] + q[3] * q[3]));
   const T x = q[1] * s, y = q[2] * s, z = q[3] * s;
   const T wx = q[0] * x, wy = q[0] * y, wz = q[0] * z;
   const T xx = q[1] * x, xy = q[1] * y, xz = q[1] * z;

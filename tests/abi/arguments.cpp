@@ -149,7 +149,7 @@ TEST_F(Arguments, NumbersThatAreNotFiniteAreRefused) {
 TEST_F(Arguments, OptionsOfAClosureAreChecked) {
   const Reading before = read(host);
   auto options = sized<koppel_close_options>();
-  options.method = KOPPEL_METHOD_CERES + 1;
+  options.method = KOPPEL_METHOD_FLOW + 1;
   auto error = sized<koppel_error>();
   EXPECT_EQ(koppel_close(state, work, &options, nullptr, &error), refused);
   EXPECT_STREQ(error.code, "E0901");

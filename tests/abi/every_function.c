@@ -112,7 +112,7 @@ static void describes_itself(const koppel_mechanism* mechanism) {
 /* ---- closing, rates, results */
 
 static void closes_by_every_method(const koppel_mechanism* mechanism, koppel_work* work) {
-  for (int32_t method = KOPPEL_METHOD_AUTO; method <= KOPPEL_METHOD_CERES; ++method) {
+  for (int32_t method = KOPPEL_METHOD_AUTO; method <= KOPPEL_METHOD_FLOW; ++method) {
     koppel_state* state = NULL;
     koppel_close_options options = {.struct_size = sizeof options, .method = method};
     SIZED(koppel_report, report);

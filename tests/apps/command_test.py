@@ -99,7 +99,7 @@ class Check(ProgramTest):
     def test_a_mechanism_out_of_reach_does_not_close(self):
         document = self.json(NOT_CLOSED, "check", self.write("far.toml", FAR))
         self.assertIs(document["closed"], False)
-        self.assertEqual([finding["code"] for finding in document["diagnostics"]], ["E0701"])
+        self.assertEqual([finding["code"] for finding in document["diagnostics"]], ["E0706"])
 
     def test_rates_that_are_impossible_are_found(self):
         scene = self.write("over.toml", OVERDRIVEN)

@@ -15,7 +15,7 @@ os.environ.setdefault("KOPPEL_LIBRARY", str(BIN.parent / "lib" / "libkoppel.so")
 import koppel  # noqa: E402  (only now that it can be found)
 
 # How many positions there are, from the sources that the scenes name, or by their geometry.
-COUNTS = {"rstr": 4, "rscr": 2, "rccc": 2, "swash": 4, "4bar": 2, "6r_inverse": 8, "3rpr": 6, "7r": 16, "chain": 8}
+COUNTS = {"rstr": 4, "rscr": 2, "rccc": 2, "swash": 4, "4bar": 2, "6r_pose": 8, "3rpr": 6, "7r": 16, "chain": 8}
 
 
 class Modes(ProgramTest):

@@ -50,7 +50,7 @@ TEST_P(FromFarAway, ClosesMostlyAndNeverFalsely) {
   EXPECT_GE(closed_count, GetParam().floor);
 }
 
-TEST(Unreachable, DriveIsReportedAsNotFound) {
+TEST(Unreachable, DriveIsReportedAsSuch) {
   // With the long crank there is a position at 100 deg, and none at 200 deg (both ends of the range are in the scene).
   for (const auto& [angle, status] :
        {std::pair<std::string, koppel_status>{"100 deg", KOPPEL_OK}, {"200 deg", KOPPEL_NOT_CLOSED}}) {
@@ -58,7 +58,7 @@ TEST(Unreachable, DriveIsReportedAsNotFound) {
                                    {"slope = \"360 deg\"", "start = \"" + angle + "\"\nslope = \"10 deg\""}}));
     const State before = closed.state;
     EXPECT_EQ(closed.close(), status) << angle;
-    EXPECT_EQ(closed.report.verdict, status == KOPPEL_OK ? Verdict::closed : Verdict::not_found);
+    EXPECT_EQ(closed.report.verdict, status == KOPPEL_OK ? Verdict::closed : Verdict::unreachable);
     EXPECT_EQ(same_bits(closed.state, before), status != KOPPEL_OK);
   }
 }

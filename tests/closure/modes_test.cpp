@@ -127,7 +127,7 @@ TEST(Modes, OverconstrainedLoopsAreLoopsLikeOthers) {
 }
 
 TEST(Modes, ARobotWithAWristReachesAPoseInEightWays) {
-  const Found found(shipped("6r_inverse"));
+  const Found found(shipped("6r_pose"));
   EXPECT_EQ(found.count(), 8u);
   EXPECT_TRUE(found.modes.complete);
   const char* const joints[] = {"base", "shoulder", "elbow", "forearm", "wrist", "flange"};

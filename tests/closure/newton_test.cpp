@@ -43,7 +43,7 @@ TEST(WeldedLoop, TurnedByHalfATurnIsNotClosed) {
   Closed closed(turned_weld + std::string("[[drive]]\nof = 'hinge.angle'\ntype = 'constant'\nvalue = '180 deg'\n"));
   const State before = closed.state;
   EXPECT_EQ(closed.close(), KOPPEL_NOT_CLOSED);
-  EXPECT_EQ(closed.report.verdict, Verdict::not_found);
+  EXPECT_EQ(closed.report.verdict, Verdict::unreachable);
   EXPECT_NEAR(closed.report.residual, std::numbers::pi, 1e-12);
   EXPECT_TRUE(same_bits(closed.state, before));
 }

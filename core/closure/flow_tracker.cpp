@@ -165,7 +165,7 @@ void FlowTracker::set_motion(std::uint32_t variable, double v, double a) {
 }
 
 void FlowTracker::take_error(std::uint32_t variable, double error) {
-  errors_[variable] = error;
+  errors_[variable] = error * (variables_[variable].kind == VariableKind::slide ? length_ : 1.0);
   accuracy_.coordinate_error = std::max(accuracy_.coordinate_error, error);
 }
 

@@ -83,7 +83,7 @@ class FlowTracker {
   void place_turn(std::uint32_t variable, double x, double cosine, double sine);
   void set_motion(std::uint32_t variable, double v, double a);
   double error_through(const ProductForm& form, std::uint32_t unknown, double slope) const;
-  double error_of(const Step& step) const;
+  double error_through(const Row& row, std::uint32_t unknown, double slope) const;
   void take_error(std::uint32_t variable, double error);
 
   double length_ = 1.0;
@@ -93,7 +93,7 @@ class FlowTracker {
   // Of the call that is going on; of each variable.
   std::vector<CoordinateBasis> bases_;
   std::vector<MovingPlace> places_;
-  std::vector<double> errors_;  ///< in radians' size
+  std::vector<double> errors_;  ///< [rad, m]; of balls none are carried on
   Eigen::VectorXd *q_ = nullptr, *v_ = nullptr, *a_ = nullptr;
   TrackedAccuracy accuracy_;
 };

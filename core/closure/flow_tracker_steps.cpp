@@ -32,17 +32,18 @@ double FlowTracker::error_through(const ProductForm& form, std::uint32_t unknown
   for (std::size_t i = 0; i < form.variables().size(); ++i) {
     const std::uint32_t v = form.variables()[i];
     if (v == unknown || errors_[v] == 0.0) continue;
-    sum += std::abs(form.by(i, bases_)) * errors_[v] * (variables_[v].kind == VariableKind::slide ? length_ : 1.0);
+    sum += std::abs(form.by(i, bases_)) * errors_[v];
   }
   return sum / std::abs(slope);
 }
 
-/// Of a condition that is walked along, or of a pose: rounding on the way, and what the worst of the given coordinates
-/// leaves. Their errors have common causes, so that they do not add up.
-double FlowTracker::error_of(const Step& step) const {
-  double worst = 0.0;
-  for (const std::uint32_t v : step.given) worst = std::max(worst, errors_[v]);
-  return 8.0 * eps * static_cast<double>(1 + step.given.size()) + 2.0 * worst;
+/// The same of a condition that is walked along: the greatest error that comes through, as they have common causes.
+double FlowTracker::error_through(const Row& row, std::uint32_t unknown, double slope) const {
+  const double size = size_of(row.condition, length_);
+  const double through = std::max(row.lower.sensitivity(places_, errors_, unknown, row.condition),
+                                  row.upper.sensitivity(places_, errors_, unknown, row.condition));
+  constexpr double roundings = 32.0;
+  return (roundings * eps + through / size) / std::abs(slope);
 }
 
 /// The condition's slope in a variable where that is placed, in radians or lengths.
@@ -97,7 +98,7 @@ bool FlowTracker::solve_one(const Step& step, std::int8_t side) {
   errors_[x] = 0.0;
   if (!(best.form ? solve_form(best, x) : solve_walk(best, x))) return false;
   const double slope_here = slope(best, x);
-  if (!best.form) take_error(x, error_of(step) / std::abs(slope_here));
+  if (!best.form) take_error(x, error_through(best, x, slope_here));
   return (slope_here < 0.0) == (side < 0);
 }
 
@@ -268,7 +269,11 @@ bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
 /// The walk leads from behind the joint to before it, so that it shows the joint's motion backwards.
 void FlowTracker::read_joint(const Step& step) {
   const MovingPose before = step.around.end(places_);
-  const double error = error_of(step);
+  // What the worst of the given coordinates leaves.
+  double error = 32.0 * eps;
+  for (const std::uint32_t v : step.given) {
+    error = std::max(error, errors_[v] / (variables_[v].kind == VariableKind::slide ? length_ : 1.0));
+  }
   for (std::size_t i = 0; i < step.unknowns.size(); ++i) {
     const std::uint32_t x = step.unknowns[i];
     switch (variables_[x].kind) {

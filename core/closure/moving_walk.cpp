@@ -1,6 +1,7 @@
 #include "closure/moving_walk.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace koppel {
 namespace {
@@ -120,6 +121,25 @@ MovingWalk::Slope MovingWalk::slope(std::span<const MovingPlace> places, std::ui
   result.pose = result.pose * last_;
   result.linear += result.angular.cross(result.pose.position - point);
   return result;
+}
+
+double MovingWalk::sensitivity(std::span<const MovingPlace> places, std::span<const double> errors,
+                               std::uint32_t except, const ClosureCondition& condition) const {
+  // The end is needed for every leg: a second pass after it.
+  const Pose end = slope(places, except).pose;
+  double most = 0.0;
+  Pose at;
+  for (const Leg& leg : legs_) {
+    at = at * leg.to;
+    apply(leg.kind, places[leg.variable].at, leg.inverse, at);
+    if (leg.variable == except || errors[leg.variable] == 0.0 || leg.kind == VariableKind::ball) continue;
+    const Vector3 axis = at.rotation.col(2);
+    const bool turns = leg.kind == VariableKind::turn;
+    const Vector3 angular = turns ? axis : Vector3::Zero();
+    const Vector3 linear = turns ? Vector3(axis.cross(end.position - at.position)) : axis;
+    most = std::max(most, std::abs(change(condition, end, angular, linear)) * errors[leg.variable]);
+  }
+  return most;
 }
 
 }  // namespace koppel

@@ -38,6 +38,9 @@ class MovingWalk {
     Vector3 angular = Vector3::Zero(), linear = Vector3::Zero();
   };
   Slope slope(std::span<const MovingPlace> places, std::uint32_t variable) const;
+  /// The most that an error of one of the other scalar variables [rad, m] changes a condition.
+  double sensitivity(std::span<const MovingPlace> places, std::span<const double> errors, std::uint32_t except,
+                     const ClosureCondition& condition) const;
 
  private:
   struct Leg {

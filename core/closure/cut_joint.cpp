@@ -104,7 +104,7 @@ Vector3 plane_normal(const Run& run) {
   return normal;
 }
 
-/// Whether a planar run of three reaches all positions of the plane: not two parallel slides, not two equal axes.
+/// Whether a planar run has as many freedoms as motions: not two parallel slides, not two equal axes.
 bool full_plane(const Run& run, double length) {
   for (std::size_t i = 0; i + 1 < run.count; ++i) {
     const bool slides = run.kinds[i] == VariableKind::slide && run.kinds[i + 1] == VariableKind::slide;
@@ -113,7 +113,7 @@ bool full_plane(const Run& run, double length) {
     const Vector3 apart = run.points[i + 1] - run.points[i];
     if (turns && nothing(run.axes[i].cross(apart).norm() / length, run.doubtful)) return false;
   }
-  return run.turns() > 0;
+  return run.count == 2 || run.turns() > 0;
 }
 
 Pose frame(const Vector3& z, const Vector3& origin) {
@@ -162,7 +162,7 @@ std::optional<CutJoint> cut_joint(const Loop& loop, std::span<const Variable> va
     }
     if (!found && count == 2) found = of_cylinder(run);
     const Vector3 normal = found ? Vector3::Zero() : plane_normal(run);
-    if (!normal.isZero() && (count == 2 || full_plane(run, length))) {
+    if (!normal.isZero() && full_plane(run, length)) {
       const CutShape shape = count == 3         ? CutShape::plane
                              : run.turns() == 0 ? CutShape::sliding_plane
                                                 : CutShape::turning_plane;

@@ -188,11 +188,14 @@ std::vector<std::vector<EdgeStep>> cycle_basis(std::size_t bodies, const std::ve
   const std::size_t wanted = edges.size() - reached;
   const std::vector<Candidate> all = candidates(graph, bodies);
   std::vector<std::uint32_t> loops_through(edges.size(), 0);
-  // Of equally light walks those come first that make the fewest more joints belong to several loops: such joints
-  // couple the loops.
-  const auto newly_shared = [&](const Candidate& candidate) {
-    return std::count_if(candidate.edges.begin(), candidate.edges.end(),
-                         [&](std::uint32_t edge) { return loops_through[edge] == 1; });
+  // Of equally light walks those come first that go on from the chosen ones by few joints, and that make few more of
+  // these belong to several loops: shared joints couple the loops.
+  const auto spread = [&](std::uint32_t index) {
+    const auto through = [&](std::uint32_t loops) {
+      return std::count_if(all[index].edges.begin(), all[index].edges.end(),
+                           [&](std::uint32_t edge) { return loops_through[edge] == loops; });
+    };
+    return std::pair(through(0), through(1));
   };
   for (std::size_t first = 0; first < all.size() && basis.size() < wanted;) {
     std::size_t end = first;
@@ -202,9 +205,8 @@ std::vector<std::vector<EdgeStep>> cycle_basis(std::size_t bodies, const std::ve
     while (!open.empty() && basis.size() < wanted) {
       auto next = open.begin();
       if (open.size() <= few) {
-        next = std::min_element(open.begin(), open.end(), [&](std::uint32_t a, std::uint32_t b) {
-          return newly_shared(all[a]) < newly_shared(all[b]);
-        });
+        next = std::min_element(open.begin(), open.end(),
+                                [&](std::uint32_t x, std::uint32_t y) { return spread(x) < spread(y); });
       }
       const Candidate& candidate = all[*next];
       open.erase(next);

@@ -72,9 +72,13 @@ std::vector<ImaginaryJoint> hubs(const Mechanism& mechanism) {
   return pairs;
 }
 
-bool has_numerical(const Flow& flow) {
-  return std::any_of(flow.steps.begin(), flow.steps.end(),
-                     [](const FlowStep& step) { return step.kind == StepKind::numerical && step.loops.size() > 1; });
+/// A body with a ball is placed together with others: its pose is the better unknown (K-II-4.3.2b).
+bool places_a_body(const Flow& flow) {
+  const auto is_ball = [&](std::uint32_t v) { return flow.loops.variables[v].kind == VariableKind::ball; };
+  return std::any_of(flow.steps.begin(), flow.steps.end(), [&](const FlowStep& step) {
+    return step.kind == StepKind::numerical && step.loops.size() > 1 &&
+           std::any_of(step.unknowns.begin(), step.unknowns.end(), is_ball);
+  });
 }
 
 /// The joints of all loops of steps that are not solved for one unknown at a time.
@@ -100,7 +104,7 @@ Flow plan_flow(const Mechanism& mechanism, FlowChoice choice) {
     if (cost(other) < cost(best)) best = std::move(other);
   };
   for (const JointId joint : joints_to_favour(best)) attempt({joint, std::nullopt});
-  if (has_numerical(best)) {
+  if (places_a_body(best)) {
     for (const ImaginaryJoint& pair : hubs(mechanism)) attempt({std::nullopt, pair});
   }
   return best;

@@ -12,7 +12,9 @@ FlowOutcome close_by_flow(Work& work, const State& state, Report& report) {
   options.restarts = 200;
   Modes modes;
   if (!find_modes(work, state, options, modes)) return FlowOutcome::plugin_failed;
-  if (modes.modes.empty()) return modes.complete ? FlowOutcome::unreachable : FlowOutcome::unknown;
+  if (modes.modes.empty()) {
+    return modes.complete && modes.held == 0 ? FlowOutcome::unreachable : FlowOutcome::unknown;
+  }
   work.q = modes.modes.front().q;
   if (!work.equations.evaluate(work.q, state.time)) return FlowOutcome::plugin_failed;
   report.solver = SolverUsed::flow;

@@ -65,6 +65,7 @@ FlowPlan::FlowPlan(Flow& flow)
       done_(flow.loops.loops.size(), false),
       stale_(flow.loops.loops.size(), true),
       recovering_(flow.loops.loops.size(), false),
+      used_cut_(flow.loops.loops.size()),
       cuts_(flow.loops.loops.size()) {
   for (std::uint32_t i = 0; i < flow.loops.loops.size(); ++i) {
     for (const LoopMotion& motion : flow.loops.loops[i].motions) loops_of_[motion.variable].push_back(i);
@@ -239,14 +240,18 @@ void FlowPlan::add(FlowStep step) {
       std::all_of(step.loops.begin(), step.loops.end(), [this](std::uint32_t loop) { return recovering_[loop]; }));
   // A loop whose unknowns are all hidden in the cut that was used is closed; what comes then, only tells where the cut
   // joints are.
-  for (const FlowRow& row : step.rows) {
-    const LoopCut& cut = flow_.cuts[row.cut];
-    const Loop& loop = flow_.loops.loops[cut.loop];
-    bool all_hidden = true;
-    for (std::size_t i = 0; i < loop.motions.size(); ++i) {
-      all_hidden = all_hidden && (known_[loop.motions[i].variable] || cut.hides(i, loop.motions.size()));
+  for (const FlowRow& row : step.rows) used_cut_[flow_.cuts[row.cut].loop] = row.cut;
+  for (const std::uint32_t v : step.unknowns) {
+    for (const std::uint32_t index : loops_of_[v]) {
+      if (!used_cut_[index]) continue;
+      const LoopCut& cut = flow_.cuts[*used_cut_[index]];
+      const Loop& loop = flow_.loops.loops[index];
+      bool all_hidden = true;
+      for (std::size_t i = 0; i < loop.motions.size(); ++i) {
+        all_hidden = all_hidden && (known_[loop.motions[i].variable] || cut.hides(i, loop.motions.size()));
+      }
+      recovering_[index] = recovering_[index] || all_hidden;
     }
-    if (all_hidden) recovering_[cut.loop] = true;
   }
   flow_.steps.push_back(std::move(step));
 }

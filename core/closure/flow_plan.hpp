@@ -82,12 +82,13 @@ class FlowPlan {
   Flow& flow_;
   std::mt19937_64 random_{20240229};
   std::vector<bool> known_;
-  std::vector<std::vector<std::uint32_t>> loops_of_;  ///< of each variable
-  std::vector<bool> done_;                            ///< loops without unknowns
-  std::vector<bool> stale_;                           ///< loops whose cuts must be found anew
-  std::vector<bool> recovering_;                      ///< loops that are closed but for their cut joints' coordinates
-  std::vector<bool> steps_of_recovery_;               ///< of each step: all its loops were closed before
-  std::vector<std::vector<PlannedCut>> cuts_;         ///< of each loop, for its present unknowns
+  std::vector<std::vector<std::uint32_t>> loops_of_;    ///< of each variable
+  std::vector<bool> done_;                              ///< loops without unknowns
+  std::vector<bool> stale_;                             ///< loops whose cuts must be found anew
+  std::vector<bool> recovering_;                        ///< loops that are closed but for their cut joints' coordinates
+  std::vector<std::optional<std::uint32_t>> used_cut_;  ///< of each loop, the last that a step used
+  std::vector<bool> steps_of_recovery_;                 ///< of each step: all its loops were closed before
+  std::vector<std::vector<PlannedCut>> cuts_;           ///< of each loop, for its present unknowns
 };
 
 }  // namespace koppel

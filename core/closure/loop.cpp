@@ -25,7 +25,7 @@ Pose frame_of(const ElementaryMotion& motion, bool reversed) {
 /// What a motion does at the coordinate -zero.
 Pose back_to_zero(const ElementaryMotion& motion) {
   Pose back;
-  if (motion.kind == ElementaryMotionKind::rotation) {
+  if (motion.kind == ElementaryMotionKind::rotation || motion.kind == ElementaryMotionKind::screw) {
     const double c = std::cos(motion.zero), s = std::sin(motion.zero);
     back.rotation << c, s, 0, -s, c, 0, 0, 0, 1;
   } else if (motion.kind == ElementaryMotionKind::translation) {
@@ -45,8 +45,9 @@ VariableKind kind_of(const ElementaryMotion& motion) {
 }
 
 bool has_pitch(const Joint& joint) {
-  return std::any_of(joint.motions().begin(), joint.motions().end(),
-                     [](const ElementaryMotion& motion) { return motion.kind == ElementaryMotionKind::screw; });
+  return std::any_of(joint.motions().begin(), joint.motions().end(), [](const ElementaryMotion& motion) {
+    return motion.kind == ElementaryMotionKind::screw && motion.pitch != 0.0;
+  });
 }
 
 /// Collects the motions of a walk through joints; constants are carried over to the next motion.

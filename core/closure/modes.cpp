@@ -40,6 +40,7 @@ class Search {
   /// False: a plugin failed.
   bool run() {
     modes_.complete = !flow_.doubtful;
+    modes_.held = flow_.held.size();
     if (flow_.doubtful) step_why_ = "axes that are taken for parallel or meeting are so only nearly";
     const auto nq = static_cast<Eigen::Index>(work_.mechanism->nq);
     // Imaginary joints start where nothing has moved.
@@ -225,7 +226,9 @@ bool find_modes(Work& work, const State& state, const ModeOptions& options, Mode
     modes.why = flow.obstacle;
     return restart(work, state, options, modes);
   }
-  return Search(work, state, options, flow, modes).run();
+  if (!Search(work, state, options, flow, modes).run()) return false;
+  const bool stopped = options.progress && !options.progress(modes.modes.size(), 1.0);
+  return !modes.modes.empty() || modes.complete || stopped || restart(work, state, options, modes);
 }
 
 }  // namespace koppel

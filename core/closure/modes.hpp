@@ -25,9 +25,11 @@ struct Mode {
 
 struct Modes {
   std::vector<Mode> modes;
-  bool complete = false;          ///< there are no others
-  std::string why;                ///< how that is known, or why it is not
-  std::size_t twins = 1;          ///< how many positions of links with a ball and a Cardan joint each mode stands for
+  bool complete = false;  ///< there are no others
+  std::string why;        ///< how that is known, or why it is not
+  std::size_t twins = 1;  ///< how many positions of links with a ball and a Cardan joint each mode stands for
+  /// Coordinates that no input determines and that were taken from the state: of others nothing is said.
+  std::size_t held = 0;
   std::vector<double> missed_by;  ///< of dead ends in one unknown: by which part of its range (Roots::missed_by)
 };
 

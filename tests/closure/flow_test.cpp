@@ -87,7 +87,7 @@ struct Planned {
     if (v.joint.index() >= built->joints.size()) {
       const auto first = std::find_if(flow.loops.variables.begin(), flow.loops.variables.end(),
                                       [&](const Variable& other) { return other.joint == v.joint; });
-      return "pose " + std::to_string(variable - (first - flow.loops.variables.begin()));
+      return std::string("pose ") + std::to_string(variable - (first - flow.loops.variables.begin()));
     }
     if (v.kind == VariableKind::ball) return built->joints[v.joint.index()].name;
     return built->coordinate_names[v.q].name;
@@ -104,9 +104,9 @@ struct Planned {
     for (const FlowRow& row : step.rows) {
       const LoopCut& cut = flow.cuts[row.cut];
       std::string pair = letters[static_cast<std::size_t>(cut.a.shape)];
-      if (cut.b) pair += "-" + std::string(letters[static_cast<std::size_t>(cut.b->shape)]);
+      if (cut.b) pair.append("-").append(letters[static_cast<std::size_t>(cut.b->shape)]);
       if (result.rfind(pair, 0) != 0) result += (result.empty() ? "" : ", ") + pair;
-      result += " " + std::to_string(static_cast<int>(cut.conditions[row.condition].type));
+      result += std::string(" ") + std::to_string(static_cast<int>(cut.conditions[row.condition].type));
     }
     return result;
   }
@@ -261,7 +261,7 @@ TEST(Flow, OfATurnedSwashPlateFromItsLeversIsBothTiltsTogether) {
 class FlowOfAScene : public testing::TestWithParam<std::string> {};
 
 INSTANTIATE_TEST_SUITE_P(Closure, FlowOfAScene, testing::ValuesIn(scenes()),
-                         [](const auto& test) { return "scene_" + test.param; });
+                         [](const auto& test) { return std::string("scene_") + test.param; });
 
 /// Planned once: most tests only look.
 const Planned& shipped(const std::string& name) {
@@ -489,7 +489,7 @@ struct SameFlow : testing::TestWithParam<std::string> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Closure, SameFlow, testing::ValuesIn(scenes()),
-                         [](const auto& test) { return "scene_" + test.param; });
+                         [](const auto& test) { return std::string("scene_") + test.param; });
 
 const Back unchanged = [](const std::string& name) { return name; };
 

@@ -157,12 +157,14 @@ struct AnyWay {
   static std::string written(const std::vector<Part>& parts, const std::vector<Pose>& first,
                              const std::vector<Pose>& second) {
     const std::size_t n = parts.size();
-    const auto body = [&](std::size_t i) { return i % n == 0 ? std::string("ground") : "b" + std::to_string(i); };
+    const auto body = [&](std::size_t i) {
+      return i % n == 0 ? std::string("ground") : std::string("b") + std::to_string(i);
+    };
     std::string bodies = "[scene]\nlength = 1\n", joints;
     for (std::size_t i = 0; i < n; ++i) {
-      if (i > 0) bodies += "[[body]]\nname = '" + body(i) + "'\n";
+      if (i > 0) bodies += std::string("[[body]]\nname = '") + body(i) + "'\n";
       const std::string near = frame_text(body(i), first[i]), far = frame_text(body(i + 1), second[i]);
-      joints += "[[joint]]\nname = 'j" + std::to_string(i) + "'\ntype = " + parts[i].type;
+      joints += std::string("[[joint]]\nname = 'j") + std::to_string(i) + "'\ntype = " + parts[i].type;
       joints +=
           "\ninlet = " + (parts[i].reversed ? far : near) + "\noutlet = " + (parts[i].reversed ? near : far) + "\n";
     }

@@ -95,9 +95,9 @@ inline std::string frame_of(std::size_t body, const Pose& pose) {
   std::ostringstream out;
   const Vector4 q = quaternion_of_rotation<double>(pose.rotation);
   const Vector3& p = pose.position;
-  out << std::setprecision(17) << "{ on = '" << (body == 0 ? "ground" : "b" + std::to_string(body)) << "', at = ["
-      << p[0] << ", " << p[1] << ", " << p[2] << "], quaternion = [" << q[0] << ", " << q[1] << ", " << q[2] << ", "
-      << q[3] << "] }";
+  out << std::setprecision(17) << "{ on = '" << (body == 0 ? "ground" : std::string("b") + std::to_string(body))
+      << "', at = [" << p[0] << ", " << p[1] << ", " << p[2] << "], quaternion = [" << q[0] << ", " << q[1] << ", "
+      << q[2] << ", " << q[3] << "] }";
   return out.str();
 }
 

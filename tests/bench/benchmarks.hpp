@@ -22,4 +22,7 @@ void rates(benchmark::State& timer, const Run& run);
 /// A whole step of a run: inputs, closure, velocities, accelerations.
 void move_step(benchmark::State& timer, const Run& run);
 
+/// All closed positions for the inputs at time 0.
+void all_modes(benchmark::State& timer, const Run& run);
+
 }  // namespace koppel::bench

@@ -1,6 +1,8 @@
 #include "run.hpp"
 
 #include <algorithm>
+#include <sstream>
+#include <utility>
 
 #include "koppel_builtin_plugins.h"
 #include "scene/scene.hpp"
@@ -19,11 +21,10 @@ std::shared_ptr<Registry> make_registry() {
 
 }  // namespace
 
-Result<Run> load(const std::string& name) {
-  Run run;
-  run.registry = make_registry();
-  Diagnostics findings;
-  KOPPEL_TRY(const Scene scene, read_scene_file(*run.registry, KOPPEL_SCENES "/" + name + ".toml", findings));
+namespace {
+
+/// Compiles a scene and moves it through its run.
+Result<Run> moved(Run run, const Scene& scene, const std::string& name, Diagnostics& findings) {
   KOPPEL_TRY(run.mechanism, compile(scene, findings));
   const Mechanism& mechanism = *run.mechanism;
   Work work(run.mechanism);
@@ -37,6 +38,42 @@ Result<Run> load(const std::string& name) {
     run.states.push_back(state);
   }
   return run;
+}
+
+/// Bell cranks 0.35 m apart with arms of 0.15 m, upright, and couplers as long from each to the next: parallelograms.
+std::string chain_text(int count) {
+  std::ostringstream bodies, joints;
+  bodies << "schema = 1\n[scene]\nname = 'row'\nduration = 1\nsteps = 90\n[[body]]\nname = 'bell0'\n";
+  joints << "[[joint]]\nname = 'bell0'\ntype = 'revolute'\ninlet = 'ground'\noutlet = 'bell0'\n"
+            "[[drive]]\nof = 'bell0.angle'\ntype = 'sine'\noffset = '90 deg'\namplitude = '20 deg'\nfrequency = 1\n";
+  for (int i = 1; i <= count; ++i) {
+    bodies << "[[body]]\nname = 'coupler" << i << "'\n[[body]]\nname = 'bell" << i << "'\n";
+    joints << "[[joint]]\nname = 'pin" << i << "'\ntype = 'revolute'\ninlet = { on = 'bell" << i - 1
+           << "', at = [0.15, 0, 0] }\noutlet = 'coupler" << i << "'\nstart = { angle = '-90 deg' }\n"
+           << "[[joint]]\nname = 'bell" << i << "'\ntype = 'revolute'\ninlet = { on = 'ground', at = [" << 0.35 * i
+           << ", 0, 0] }\noutlet = 'bell" << i << "'\nstart = { angle = '90 deg' }\n"
+           << "[[joint]]\nname = 'tip" << i << "'\ntype = 'revolute'\ninlet = { on = 'bell" << i
+           << "', at = [0.15, 0, 0] }\noutlet = { on = 'coupler" << i << "', at = [0.35, 0, 0] }\n";
+  }
+  return bodies.str() + joints.str();
+}
+
+}  // namespace
+
+Result<Run> load(const std::string& name) {
+  Run run;
+  run.registry = make_registry();
+  Diagnostics findings;
+  KOPPEL_TRY(const Scene scene, read_scene_file(*run.registry, KOPPEL_SCENES "/" + name + ".toml", findings));
+  return moved(std::move(run), scene, name, findings);
+}
+
+Result<Run> load_chain(int count) {
+  Run run;
+  run.registry = make_registry();
+  Diagnostics findings;
+  KOPPEL_TRY(const Scene scene, read_scene_text(*run.registry, chain_text(count), {}, findings));
+  return moved(std::move(run), scene, "row", findings);
 }
 
 void Figures::take(const Report& report) {

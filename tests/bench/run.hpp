@@ -24,6 +24,9 @@ struct Run {
 /// apps/scenes/<name>.toml. Error: it does not read, compile, or move through its run.
 Result<Run> load(const std::string& name);
 
+/// `count` four-bars in a row, each driven by the one before: all of them move at every step.
+Result<Run> load_chain(int count);
+
 /// What the closures of a batch were like: shown beside the time, because no time counts without its error.
 class Figures {
  public:

@@ -1,6 +1,7 @@
 // How a flow is planned: step by step, always the least block of unknowns that what is known determines.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -12,6 +13,13 @@
 #include "closure/flow.hpp"
 
 namespace koppel {
+
+/// Adds a value to an ascending list, once.
+template <typename T>
+inline void insert_sorted(std::vector<T>& into, const T& value) {
+  const auto at = std::lower_bound(into.begin(), into.end(), value);
+  if (at == into.end() || *at != value) into.insert(at, value);
+}
 
 /// A cut of a loop with what enters its conditions.
 struct PlannedCut {

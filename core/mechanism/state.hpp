@@ -34,7 +34,7 @@ struct State {
     double weakest = 0.0;          ///< singular value there that counts
     /// On which side of the singular positions each step of the closed forms stands (see FlowTracker); 0: not known.
     std::vector<std::int8_t> sides;
-    double pace = 1.0;             ///< time of the drives by path parameter, of a state that follows its curve
+    double pace = 1.0;  ///< time of the drives by path parameter, of a state that follows its curve
   } history;
 };
 

@@ -16,8 +16,8 @@ class Scene : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(FlowClosing, Scene,
                          testing::Values("4bar", "rstr", "rscr", "rccc", "swash", "drive", "sph4", "chain", "7b10j",
-                                         "sar", "9body", "bennett", "panto", "slidercrank", "3rpr", "6r_pose",
-                                         "6joint", "dwb"),
+                                         "sar", "9body", "bennett", "panto", "slidercrank", "3rpr", "6r_pose", "6joint",
+                                         "dwb"),
                          [](const auto& test) { return std::string("scene_") + test.param; });
 
 TEST_P(Scene, ClosesAlikeByFlowNewtonAndCeres) {

@@ -57,7 +57,9 @@ inline RandomLoop random_loop(const std::vector<LoopJoint>& joints, Random& rand
     bodies << "[scene]\nlength = 1\n" << std::setprecision(17);
     rest << std::setprecision(17);
     for (std::size_t i = 0; i < n; ++i) {
-      const auto body = [&](std::size_t k) { return k % n == 0 ? std::string("ground") : std::string("b") + std::to_string(k); };
+      const auto body = [&](std::size_t k) {
+        return k % n == 0 ? std::string("ground") : std::string("b") + std::to_string(k);
+      };
       if (i > 0) bodies << "[[body]]\nname = '" << body(i) << "'\n";
       rest << "[[joint]]\nname = 'j" << i << "'\ntype = '" << joints[i].type
            << "'\ninlet = " << frame_text(body(i), inlets[i]) << "\noutlet = " << frame_text(body(i + 1), outlets[i])

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <random>
 #include <string>
@@ -37,6 +39,9 @@ Block shipped_block(const std::string& scene) {
   Closed closed(shipped(scene));
   EXPECT_GE(closed.close(), 0);
   Block block{scene, plan_flow(*closed.built), {}, closed.state.q};
+  // Imaginary joints have places behind those of the state; where they stand is not asked here.
+  const auto more = 7 * static_cast<Eigen::Index>(block.flow.loops.imaginary.size());
+  block.q.conservativeResizeLike(Eigen::VectorXd::Ones(block.q.size() + more));
   for (const FlowStep& step : block.flow.steps) {
     if (step.kind == StepKind::numerical) block.step = step;
   }
@@ -103,29 +108,60 @@ Block pair_block(const std::string& name, CutShape a, CutShape b, const std::vec
 const LoopJoint ball = of_type("spherical"), turn = of_type("revolute"), slide = of_type("prismatic"),
                 cylinder = of_type("cylindrical"), plane = of_type("planar");
 
-std::vector<Block> blocks() {
-  return {shipped_block("multilink"),
-          shipped_block("7r"),
-          shipped_block("stewart"),
-          whole_loop(0),
-          whole_loop(1),
-          whole_loop(2),
-          whole_loop(3),
-          pair_block("C_C", CutShape::cylinder, CutShape::cylinder, {cylinder, turn, cylinder, slide, turn}),
-          pair_block("S_R", CutShape::ball, CutShape::turn, {ball, turn, slide, turn, slide}),
-          pair_block("E_R", CutShape::plane, CutShape::turn, {plane, slide, turn, turn}),
-          pair_block("C_R", CutShape::cylinder, CutShape::turn, {cylinder, ball, slide, turn}),
-          pair_block("R_R", CutShape::turn, CutShape::turn, {turn, ball, slide, turn, slide}),
-          pair_block("R_P", CutShape::turn, CutShape::slide, {turn, ball, turn, slide}),
-          pair_block("P_P", CutShape::slide, CutShape::slide, {slide, ball, turn, slide, turn})};
-}
+struct Made {
+  std::string name;
+  std::function<Block()> make;
+};
 
-class ABlock : public testing::TestWithParam<Block> {};
+const std::vector<Made> blocks{
+    {"multilink", [] { return shipped_block("multilink"); }},
+    {"7r", [] { return shipped_block("7r"); }},
+    {"stewart", [] { return shipped_block("stewart"); }},
+    {"no_slides", [] { return whole_loop(0); }},
+    {"one_slide", [] { return whole_loop(1); }},
+    {"two_slides", [] { return whole_loop(2); }},
+    {"three_slides", [] { return whole_loop(3); }},
+    {"C_C",
+     [] {
+       return pair_block("C_C", CutShape::cylinder, CutShape::cylinder, {cylinder, turn, cylinder, slide, turn});
+     }},
+    {"S_R",
+     [] {
+       return pair_block("S_R", CutShape::ball, CutShape::turn, {ball, turn, slide, turn, slide});
+     }},
+    {"E_R",
+     [] {
+       return pair_block("E_R", CutShape::plane, CutShape::turn, {plane, slide, turn, turn});
+     }},
+    {"C_R",
+     [] {
+       return pair_block("C_R", CutShape::cylinder, CutShape::turn, {cylinder, ball, slide, turn});
+     }},
+    {"R_R",
+     [] {
+       return pair_block("R_R", CutShape::turn, CutShape::turn, {turn, ball, slide, turn, slide});
+     }},
+    {"R_P",
+     [] {
+       return pair_block("R_P", CutShape::turn, CutShape::slide, {turn, ball, turn, slide});
+     }},
+    {"P_P", [] {
+       return pair_block("P_P", CutShape::slide, CutShape::slide, {slide, ball, turn, slide, turn});
+     }}};
 
-void PrintTo(const Block& block, std::ostream* out) { *out << block.name; }
+void PrintTo(const Made& block, std::ostream* out) { *out << block.name; }
 
-INSTANTIATE_TEST_SUITE_P(Closure, ABlock, testing::ValuesIn(blocks()),
-                         [](const auto& test) { return "of_" + test.param.name; });
+struct ABlock : testing::TestWithParam<Made> {
+  /// Made once; the tests only look.
+  const Block& block() const {
+    static std::map<std::string, Block> all;
+    const auto found = all.find(GetParam().name);
+    return found != all.end() ? found->second : all.emplace(GetParam().name, GetParam().make()).first->second;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Closure, ABlock, testing::ValuesIn(blocks),
+                         [](const auto& test) { return std::string("of_").append(test.param.name); });
 
 constexpr Family families[] = {Family::these_measures, Family::all_measures};
 
@@ -155,7 +191,7 @@ ComplexVector residual(BlockProblem& problem, const ComplexVector& x, const Comp
 
 TEST_P(ABlock, HasTheJacobianOfItsEquations) {
   for (const Family family : families) {
-    BlockProblem problem = GetParam().problem(family);
+    BlockProblem problem = block().problem(family);
     ASSERT_TRUE(problem.is_square());
     std::mt19937_64 random(1);
     for (int trial = 0; trial < 5; ++trial) {
@@ -181,11 +217,13 @@ TEST_P(ABlock, HasTheJacobianOfItsEquations) {
 
 TEST_P(ABlock, HasTheDerivativeByItsParameters) {
   for (const Family family : families) {
-    BlockProblem problem = GetParam().problem(family);
+    BlockProblem problem = block().problem(family);
     std::mt19937_64 random(2);
     for (int trial = 0; trial < 10; ++trial) {
       ComplexVector x, p, r, along;
       ASSERT_TRUE(problem.seed(random, x, p));
+      // Anywhere but near poles: displacements have Rodrigues parameters, whose square is not to come near -1.
+      p = random_vector(problem.parameters(), random) / 4.0;
       const ComplexVector dp = random_vector(problem.parameters(), random);
       problem.evaluate(x, p, r, nullptr, &dp, &along);
       const ComplexVector by =
@@ -199,7 +237,7 @@ TEST_P(ABlock, HasTheDerivativeByItsParameters) {
 // shows.
 TEST_P(ABlock, IsSolvedByItsSeeds) {
   for (const Family family : families) {
-    BlockProblem problem = GetParam().problem(family);
+    BlockProblem problem = block().problem(family);
     std::mt19937_64 random(3);
     for (int trial = 0; trial < 20; ++trial) {
       ComplexVector x, p, r;
@@ -214,14 +252,16 @@ TEST_P(ABlock, IsSolvedByItsSeeds) {
 }
 
 TEST_P(ABlock, MovesOnItsManifold) {
-  BlockProblem problem = GetParam().problem(Family::these_measures);
+  BlockProblem problem = block().problem(Family::these_measures);
   std::mt19937_64 random(4);
   for (int trial = 0; trial < 10; ++trial) {
     ComplexVector x, p, moved, lifted, scratch, print, moved_print;
     ASSERT_TRUE(problem.seed(random, x, p));
     problem.move(x, ComplexVector::Zero(problem.unknowns()), moved);
     ASSERT_EQ(moved.size(), problem.point_size());
-    EXPECT_LE(largest(moved - x), 8 * eps * largest(x)) << "nowhere";
+    // The length of (cos, sin) or of a quaternion is mended; it is a sum of squares that cancel to one.
+    const double rounding = eps * std::pow(std::max(1.0, largest(x)), 3);
+    EXPECT_LE(largest(moved - x), 8 * rounding) << "nowhere";
     const ComplexVector rate = random_vector(problem.unknowns(), random);
     problem.lift(x, rate, lifted, scratch);
     const ComplexVector by = difference_quotient([&](double t) {
@@ -230,15 +270,19 @@ TEST_P(ABlock, MovesOnItsManifold) {
       return there;
     });
     EXPECT_LE(largest(lifted - by), of_difference * (1.0 + largest(lifted))) << "at the rate";
-    // Back again, about as far as the step is bent: to second order.
+    // Steps are Cayley's: the way back leads back.
     problem.move(x, 1e-6 * rate, moved);
     problem.move(ComplexVector(moved), ComplexVector(-1e-6 * rate), scratch);
-    EXPECT_LE(largest(scratch - x), 1e-12 * 100 * (1.0 + largest(x)) * (1.0 + largest(rate)));
+    EXPECT_LE(largest(scratch - x), 32 * rounding);
     problem.fingerprint(x, print);
     problem.fingerprint(moved, moved_print);
     ASSERT_EQ(print.size(), moved_print.size());
     EXPECT_GT(largest(print - moved_print), 1e-8 * largest(rate)) << "another place, another print";
   }
+}
+
+Eigen::Index numbers_of(VariableKind kind) {
+  return kind == VariableKind::turn ? 2 : kind == VariableKind::slide ? 1 : 4;
 }
 
 /// The place of the unknowns at q.
@@ -248,9 +292,9 @@ ComplexVector point(const Block& block) {
   for (const std::uint32_t v : block.step.unknowns) {
     const Variable& variable = block.flow.loops.variables[v];
     const Place<double> at = place(variable, block.q.data());
-    const bool slides = variable.kind == VariableKind::slide;
-    const std::size_t numbers = variable.kind == VariableKind::turn ? 2 : slides ? 1 : 4;
-    for (std::size_t i = 0; i < numbers; ++i) x[next++] = at[i] / (slides ? block.flow.length : 1.0);
+    const double unit = variable.kind == VariableKind::slide ? block.flow.length : 1.0;
+    const auto numbers = static_cast<std::size_t>(numbers_of(variable.kind));
+    for (std::size_t i = 0; i < numbers; ++i) x[next++] = at[i] / unit;
   }
   return x.head(next);
 }
@@ -259,10 +303,10 @@ ComplexVector point(const Block& block) {
 bool imaginary(const Block& block) { return !block.flow.loops.imaginary.empty(); }
 
 TEST_P(ABlock, IsSolvedByTheMechanismAsItIs) {
-  if (imaginary(GetParam())) GTEST_SKIP() << "auxiliary coordinates are in no state";
-  const ComplexVector x = point(GetParam());
+  if (imaginary(block())) GTEST_SKIP() << "auxiliary coordinates are in no state";
+  const ComplexVector x = point(block());
   for (const Family family : families) {
-    BlockProblem problem = GetParam().problem(family);
+    BlockProblem problem = block().problem(family);
     ASSERT_EQ(x.size(), problem.point_size());
     const ComplexVector r = residual(problem, x, ComplexVector::Zero(problem.parameters()));
     // Closed to 1e-13 of the length; or built to a few roundings. A squared distance of some lengths takes that
@@ -272,28 +316,27 @@ TEST_P(ABlock, IsSolvedByTheMechanismAsItIs) {
 }
 
 TEST_P(ABlock, ReadsItsPointBack) {
-  if (imaginary(GetParam())) GTEST_SKIP() << "auxiliary coordinates are in no state";
-  const Block& block = GetParam();
-  Eigen::VectorXd q = block.q;
-  block.problem(Family::these_measures).read(point(block), q);
-  EXPECT_LE((q - block.q).lpNorm<Eigen::Infinity>(), 8 * eps * (1.0 + block.q.lpNorm<Eigen::Infinity>()));
+  if (imaginary(block())) GTEST_SKIP() << "auxiliary coordinates are in no state";
+  const Eigen::VectorXd& here = block().q;
+  Eigen::VectorXd q = here;
+  block().problem(Family::these_measures).read(point(block()), q);
+  EXPECT_LE((q - here).lpNorm<Eigen::Infinity>(), 8 * eps * (1.0 + here.lpNorm<Eigen::Infinity>()));
 }
 
 // A quaternion and its opposite are one rotation.
 TEST_P(ABlock, HasOnePrintForOppositeQuaternions) {
-  const Block& block = GetParam();
-  BlockProblem problem = block.problem(Family::these_measures);
+  BlockProblem problem = block().problem(Family::these_measures);
   std::mt19937_64 random(5);
   ComplexVector x, p, print, other;
   ASSERT_TRUE(problem.seed(random, x, p));
   problem.fingerprint(x, print);
-  Eigen::Index at = 0;
-  for (const std::uint32_t v : block.step.unknowns) {
-    const VariableKind kind = block.flow.loops.variables[v].kind;
-    const Eigen::Index numbers = kind == VariableKind::turn ? 2 : kind == VariableKind::slide ? 1 : 4;
-    if (kind == VariableKind::ball) x.segment(at, numbers) *= -1.0;
+  Eigen::Index at = 0, balls = 0;
+  for (const std::uint32_t v : block().step.unknowns) {
+    const Eigen::Index numbers = numbers_of(block().flow.loops.variables[v].kind);
+    if (numbers == 4) x.segment(at, numbers) *= -1.0, ++balls;
     at += numbers;
   }
+  if (balls == 0) GTEST_SKIP() << "no ball";
   problem.fingerprint(x, other);
   EXPECT_EQ(print, other);
 }

@@ -13,9 +13,11 @@ using ComplexPose = PoseT<Complex>;
 using ComplexVector3 = Vector3T<Complex>;
 using ComplexMatrix3 = Matrix3T<Complex>;
 
-Pose scaled(Pose pose, double length) {
-  pose.position /= length;
-  return pose;
+/// With lengths in units of the mechanism's.
+Way scaled(Way way, double length) {
+  for (Leg& leg : way.legs) leg.to.position /= length;
+  way.last.position /= length;
+  return way;
 }
 
 Complex bilinear(const ComplexVector3& a, const ComplexVector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -53,25 +55,22 @@ Eigen::Index numbers_of(VariableKind kind) {
 }  // namespace
 
 BlockProblem::BlockProblem(const Flow& flow, const FlowStep& step, const Eigen::VectorXd& q, Family family)
-    : variables_(flow.loops.variables), rows_(step.rows), whole_(step.whole_loops), length_(flow.length) {
-  for (Loop loop : flow.loops.loops) {
-    for (LoopMotion& motion : loop.motions) motion.to = scaled(motion.to, length_);
-    loops_.push_back(std::move(loop));
+    : variables_(flow.loops.variables), length_(flow.length) {
+  for (const FlowRow& row : step.rows) {
+    const LoopCut& cut = flow.cuts[row.cut];
+    const Loop& loop = flow.loops.loops[cut.loop];
+    rows_.push_back({cut.conditions[row.condition], scaled(lower_way(loop, variables_, cut), length_),
+                     scaled(upper_way(loop, variables_, cut), length_)});
   }
-  for (LoopCut cut : flow.cuts) {
-    for (CutJoint* joint : {&cut.a, cut.b ? &*cut.b : nullptr}) {
-      if (joint == nullptr) continue;
-      joint->before = scaled(joint->before, length_);
-      joint->after = scaled(joint->after, length_);
-    }
-    cuts_.push_back(std::move(cut));
+  for (const std::uint32_t loop : step.whole_loops) {
+    whole_.push_back(scaled(round_way(flow.loops.loops[loop], variables_), length_));
   }
   unknown_of_.assign(variables_.size(), -1);
   for (const std::uint32_t v : step.unknowns) {
     unknown_of_[v] = static_cast<std::int32_t>(unknowns_.size());
     unknowns_.push_back({v, variables_[v].kind, numbers_, tangents_});
     numbers_ += numbers_of(variables_[v].kind);
-    tangents_ += variables_[v].kind == VariableKind::ball ? 3 : 1;
+    tangents_ += freedoms_of(variables_[v].kind);
   }
   for (const Variable& variable : variables_) {
     const Place<double> here = place(variable, q.data());
@@ -87,7 +86,7 @@ BlockProblem::BlockProblem(const Flow& flow, const FlowStep& step, const Eigen::
   const auto whole = static_cast<Eigen::Index>(whole_.size());
   equations_ = static_cast<Eigen::Index>(rows_.size()) + 6 * whole;
   parameters_ = static_cast<Eigen::Index>(rows_.size()) +
-                (displaces_joints_ ? 6 * static_cast<Eigen::Index>(loops_[whole_[0]].motions.size()) : 6 * whole);
+                (displaces_joints_ ? 6 * static_cast<Eigen::Index>(whole_[0].legs.size()) : 6 * whole);
   square_ = equations_ >= tangents_;
   if (!square_) return;
   all_residual_.resize(equations_);
@@ -100,17 +99,12 @@ BlockProblem::BlockProblem(const Flow& flow, const FlowStep& step, const Eigen::
   }
   if (displaces_points_) {
     parameters_ += 6 * static_cast<Eigen::Index>(rows_.size());
-    for (const FlowRow& row : rows_) unknown_half_.push_back(half_with_unknowns(row));
   }
 }
 
-BlockProblem::Half BlockProblem::half_with_unknowns(const FlowRow& row) {
-  columns_.clear();
-  const LoopCut& cut = cuts_[row.cut];
-  CutWalk<Complex>(loops_[cut.loop], variables_, at_).lower(cut, &columns_);
-  const bool lower = std::any_of(columns_.begin(), columns_.end(),
-                                 [this](const WalkColumn<Complex>& c) { return unknown_of_[c.variable] >= 0; });
-  return lower ? Half::lower : Half::upper;
+bool BlockProblem::has_unknowns(const Way& way) const {
+  return std::any_of(way.legs.begin(), way.legs.end(),
+                     [this](const Leg& leg) { return unknown_of_[leg.variable] >= 0; });
 }
 
 Eigen::Index BlockProblem::count_solutions(const Flow& flow, const FlowStep& step) const {
@@ -146,18 +140,17 @@ void BlockProblem::conditions(const ComplexVector& p, ComplexVector& residual, C
                               const ComplexVector* dp, ComplexVector* along_dp) {
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
-    const LoopCut& cut = cuts_[rows_[k].cut];
-    const ClosureCondition& condition = cut.conditions[rows_[k].condition];
-    const CutWalk<Complex> walk(loops_[cut.loop], variables_, at_);
+    const ClosureCondition& condition = rows_[k].condition;
     residual[row] = -p[row];
     if (along_dp != nullptr) (*along_dp)[row] = -(*dp)[row];
     for (const bool lower : {true, false}) {
       columns_.clear();
       Columns* columns = jacobian != nullptr ? &columns_ : nullptr;
-      ComplexPose a_in_b = lower ? walk.lower(cut, columns) : walk.upper(cut, columns);
+      const Way& way = lower ? rows_[k].lower : rows_[k].upper;
+      ComplexPose a_in_b = walk<Complex>(way, at_, columns);
       const Complex sign = lower ? 1.0 : -1.0;
       ComplexVector3 shift = ComplexVector3::Zero();  // of b's frame; a's point is moved with a
-      if (displaces_points_ && lower == (unknown_half_[k] == Half::lower)) {
+      if (displaces_points_ && has_unknowns(way)) {
         const Eigen::Index first = static_cast<Eigen::Index>(rows_.size()) + 6 * row;
         shift = p.segment<3>(first + 3);
         a_in_b.position += a_in_b.rotation * p.segment<3>(first) + shift;
@@ -167,11 +160,10 @@ void BlockProblem::conditions(const ComplexVector& p, ComplexVector& residual, C
         }
       }
       residual[row] += sign * value(condition, a_in_b);
-      for (const WalkColumn<Complex>& column : columns_) {
+      for (const WayColumn<Complex>& column : columns_) {
         const std::int32_t unknown = unknown_of_[column.variable];
         if (unknown < 0) continue;
-        const ComplexVector3 linear =
-            column.along + cross<Complex>(column.angular, a_in_b.position - shift - column.point);
+        const ComplexVector3 linear = column.velocity(a_in_b.position - shift);
         (*jacobian)(row, unknowns_[static_cast<std::size_t>(unknown)].tangent + column.rate) +=
             sign * change(condition, a_in_b, column.angular, linear);
       }
@@ -181,7 +173,6 @@ void BlockProblem::conditions(const ComplexVector& p, ComplexVector& residual, C
 
 void BlockProblem::whole_loop(std::size_t index, const ComplexVector& p, ComplexVector& residual,
                               ComplexMatrix* jacobian, const ComplexVector* dp, ComplexVector* along_dp) {
-  const Loop& loop = loops_[whole_[index]];
   const Eigen::Index first_row = static_cast<Eigen::Index>(rows_.size() + 6 * index);
   const auto first_parameter = static_cast<Eigen::Index>(rows_.size() + (displaces_joints_ ? 0 : 6 * index));
   struct Displaced {
@@ -202,26 +193,11 @@ void BlockProblem::whole_loop(std::size_t index, const ComplexVector& p, Complex
       frame = frame * displacement(p.data() + parameter);
     }
   };
-  for (std::size_t i = 0; i < loop.motions.size(); ++i) {
-    const LoopMotion& motion = loop.motions[i];
-    frame = frame * as<Complex>(motion.to);
+  for (std::size_t i = 0; i < whole_[index].legs.size(); ++i) {
+    const Leg& leg = whole_[index].legs[i];
+    frame = frame * as<Complex>(leg.to);
     if (displaces_joints_) displace(first_parameter + 6 * static_cast<Eigen::Index>(i));
-    const VariableKind kind = variables_[motion.variable].kind;
-    const ComplexMatrix3 before = frame.rotation;
-    const bool inverse = kind == VariableKind::ball && motion.inverse;
-    apply(kind, at_[motion.variable], inverse, frame);
-    if (kind == VariableKind::ball) {
-      const ComplexMatrix3& axes = inverse ? before : frame.rotation;
-      for (std::uint8_t k = 0; k < 3; ++k) {
-        columns_.push_back(
-            {motion.variable, k, Complex(inverse ? -1.0 : 1.0) * axes.col(k), ComplexVector3::Zero(), frame.position});
-      }
-    } else {
-      const bool turn = kind == VariableKind::turn;
-      const ComplexVector3 axis = frame.rotation.col(2);
-      columns_.push_back({motion.variable, 0, turn ? axis : ComplexVector3::Zero(),
-                          turn ? ComplexVector3::Zero() : axis, frame.position});
-    }
+    pass(leg, at_[leg.variable], frame, &columns_);
   }
   if (!displaces_joints_) displace(first_parameter);
   residual.segment<3>(first_row) = axial(frame.rotation);
@@ -230,13 +206,12 @@ void BlockProblem::whole_loop(std::size_t index, const ComplexVector& p, Complex
   const ComplexMatrix3 of_angular =
       Complex(0.5) * (frame.rotation.trace() * ComplexMatrix3::Identity() - frame.rotation);
   if (jacobian != nullptr) {
-    for (const WalkColumn<Complex>& column : columns_) {
+    for (const WayColumn<Complex>& column : columns_) {
       const std::int32_t unknown = unknown_of_[column.variable];
       if (unknown < 0) continue;
       const Eigen::Index j = unknowns_[static_cast<std::size_t>(unknown)].tangent + column.rate;
       jacobian->col(j).segment<3>(first_row) += of_angular * column.angular;
-      jacobian->col(j).segment<3>(first_row + 3) +=
-          column.along + cross<Complex>(column.angular, frame.position - column.point);
+      jacobian->col(j).segment<3>(first_row + 3) += column.velocity(frame.position);
     }
   }
   if (along_dp != nullptr) {
@@ -343,25 +318,24 @@ bool BlockProblem::seed(std::mt19937_64& random, ComplexVector& x, ComplexVector
   conditions(p, open, nullptr, nullptr, nullptr);
   p.head(rows) = open.head(rows);  // they enter with a minus
   for (std::size_t i = 0; i < whole_.size(); ++i) {
-    const Loop& loop = loops_[whole_[i]];
+    const std::vector<Leg>& legs = whole_[i].legs;
     const auto first = static_cast<Eigen::Index>(rows_.size() + (displaces_joints_ ? 0 : 6 * i));
     // Displace the last joint, or the end, so that the loop closes: before * D * after = 1.
     ComplexPose before, after;
-    for (std::size_t k = 0; k < loop.motions.size(); ++k) {
-      const bool last = k + 1 == loop.motions.size();
-      before = before * as<Complex>(loop.motions[k].to);
-      if (displaces_joints_ && !last)
+    for (std::size_t k = 0; k < legs.size(); ++k) {
+      const bool last = k + 1 == legs.size();
+      before = before * as<Complex>(legs[k].to);
+      if (displaces_joints_ && !last) {
         before = before * displacement(p.data() + first + 6 * static_cast<Eigen::Index>(k));
-      ComplexPose& into = displaces_joints_ && last ? after : before;
-      const VariableKind kind = variables_[loop.motions[k].variable].kind;
-      apply(kind, at_[loop.motions[k].variable], kind == VariableKind::ball && loop.motions[k].inverse, into);
+      }
+      apply(legs[k].kind, at_[legs[k].variable], legs[k].inverse, displaces_joints_ && last ? after : before);
     }
     const ComplexPose needed = before.inverse() * after.inverse();
     const ComplexMatrix3& r = needed.rotation;
     // Rodrigues parameters of a rotation.
     const Complex denominator = 1.0 + r.trace();
     if (std::abs(denominator) < 1e-3) return false;
-    Complex* d = p.data() + first + (displaces_joints_ ? 6 * static_cast<Eigen::Index>(loop.motions.size() - 1) : 0);
+    Complex* d = p.data() + first + (displaces_joints_ ? 6 * static_cast<Eigen::Index>(legs.size() - 1) : 0);
     const ComplexVector3 x_r = Complex(2.0) / denominator * axial(r);
     for (int k = 0; k < 3; ++k) {
       d[k] = x_r[k];

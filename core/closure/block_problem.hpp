@@ -55,8 +55,11 @@ class BlockProblem final : public ContinuationProblem {
     Eigen::Index number = 0;   ///< first, in a point
     Eigen::Index tangent = 0;  ///< first
   };
-  enum class Half { lower, upper };
-  using Columns = std::vector<WalkColumn<Complex>>;
+  struct Row {
+    ClosureCondition condition;
+    Way lower, upper;
+  };
+  using Columns = std::vector<WayColumn<Complex>>;
 
   void set_places(const ComplexVector& x);
   void conditions(const ComplexVector& p, ComplexVector& residual, ComplexMatrix* jacobian, const ComplexVector* dp,
@@ -64,14 +67,12 @@ class BlockProblem final : public ContinuationProblem {
   void whole_loop(std::size_t index, const ComplexVector& p, ComplexVector& residual, ComplexMatrix* jacobian,
                   const ComplexVector* dp, ComplexVector* along_dp);
   void combine(ComplexVector& residual, ComplexMatrix* jacobian, ComplexVector* along_dp) const;
-  Half half_with_unknowns(const FlowRow& row);
+  bool has_unknowns(const Way& way) const;
   Eigen::Index count_solutions(const Flow& flow, const FlowStep& step) const;
 
   std::vector<Variable> variables_;
-  std::vector<Loop> loops_;    ///< scaled
-  std::vector<LoopCut> cuts_;  ///< scaled
-  std::vector<FlowRow> rows_;
-  std::vector<std::uint32_t> whole_;
+  std::vector<Row> rows_;
+  std::vector<Way> whole_;  ///< once round each loop that enters as a whole
   std::vector<Unknown> unknowns_;
   std::vector<Place<Complex>> at_;
   std::vector<std::int32_t> unknown_of_;  ///< of each variable, -1: known
@@ -80,7 +81,6 @@ class BlockProblem final : public ContinuationProblem {
   bool square_ = false;
   bool displaces_joints_ = false;
   bool displaces_points_ = false;
-  std::vector<Half> unknown_half_;  ///< of each row, if it displaces points
   double length_ = 1.0;
   ComplexMatrix combination_;  ///< tangents x equations, if there are more equations
   ComplexVector all_residual_, all_along_;

@@ -304,7 +304,7 @@ koppel_status move(Work& work, State& state, double time, Report& report, Branch
   }
   if (branch == Branch::stay) {
     if (const auto status = track(work, state, report)) {
-      restorer.keep();
+      if (*status >= 0) restorer.keep();
       return *status;
     }
   }

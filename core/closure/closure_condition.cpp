@@ -95,11 +95,6 @@ bool up_to_mirror(CutShape a, CutShape b) {
   return b == CutShape::turn && (a == CutShape::cylinder || a == CutShape::turn);
 }
 
-int isolated_freedoms(CutShape a, CutShape b) {
-  const auto three = [](CutShape shape) { return shape == CutShape::ball || shape == CutShape::plane; };
-  return three(a) && three(b) ? 1 : 0;
-}
-
 std::span<const ClosureCondition> joint_conditions(CutShape shape) {
   switch (shape) {
     case CutShape::ball: return of_ball;

@@ -34,9 +34,6 @@ std::span<const ClosureCondition> pair_conditions(CutShape a, CutShape b);
 /// (K-II-3.4.2a).
 bool up_to_mirror(CutShape a, CutShape b);
 
-/// Freedoms that the link between the two joints has by itself: 1 of S-S, S-E and E-E, else 0 (K-II-1.3.1b).
-int isolated_freedoms(CutShape a, CutShape b);
-
 /// The conditions of one joint between its two frames (K-II-3.3): 6 less its freedoms, all of them zero, cosines of
 /// right angles and distances.
 std::span<const ClosureCondition> joint_conditions(CutShape shape);

@@ -1,7 +1,9 @@
 #include "closure/flow_plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <set>
+#include <tuple>
 
 #include "closure/block_order.hpp"
 
@@ -57,7 +59,7 @@ FlowPlan::Variables FlowPlan::unknown_in(std::uint32_t loop) const {
 
 int FlowPlan::freedoms(const Variables& variables) const {
   int sum = 0;
-  for (const std::uint32_t v : variables) sum += flow_.loops.variables[v].kind == VariableKind::ball ? 3 : 1;
+  for (const std::uint32_t v : variables) sum += static_cast<int>(freedoms_of(flow_.loops.variables[v].kind));
   return sum;
 }
 
@@ -76,6 +78,22 @@ void FlowPlan::learn(const Variables& variables) {
 std::uint32_t FlowPlan::number_of(const LoopCut& cut) {
   flow_.cuts.push_back(cut);
   return static_cast<std::uint32_t>(flow_.cuts.size() - 1);
+}
+
+/// What of these is known is given to the step.
+void FlowPlan::give(FlowStep& step, const Variables& variables) const {
+  for (const std::uint32_t v : variables) {
+    if (known_[v]) insert_sorted(step.given, v);
+  }
+}
+
+void FlowPlan::give_known(FlowStep& step, std::uint32_t loop) const {
+  for (const LoopMotion& motion : flow_.loops.loops[loop].motions) give(step, {motion.variable});
+}
+
+void FlowPlan::take_row(FlowStep& step, const PlannedCut& cut, std::uint32_t number, std::size_t condition) const {
+  step.rows.push_back({number, static_cast<std::uint32_t>(condition), cut.enters[condition]});
+  give(step, cut.enters[condition]);
 }
 
 void FlowPlan::add(FlowStep step) {
@@ -103,7 +121,6 @@ void FlowPlan::add(FlowStep step) {
 
 /// A loop in which all is known but one joint.
 bool FlowPlan::read_joint(std::uint32_t index) {
-  const Loop& loop = flow_.loops.loops[index];
   const Variables unknown = unknown_in(index);
   for (const CutJoint& joint : cut_joints(index)) {
     if (joint.count != unknown.size()) continue;
@@ -112,9 +129,7 @@ bool FlowPlan::read_joint(std::uint32_t index) {
     FlowStep step;
     step.kind = StepKind::joint;
     step.unknowns = unknown;
-    for (const LoopMotion& motion : loop.motions) {
-      if (known_[motion.variable]) insert_sorted(step.given, motion.variable);
-    }
+    give_known(step, index);
     step.cut = number_of({index, joint, std::nullopt, {}});
     step.loops = {index};
     recovering_[index] = recovering_[index] || loops_of_[unknown.front()].size() == 1;
@@ -126,21 +141,15 @@ bool FlowPlan::read_joint(std::uint32_t index) {
 
 std::optional<FlowPlan::Candidate> FlowPlan::best_single(std::uint32_t loop) const {
   std::optional<Candidate> best;
-  const Loop& motions = flow_.loops.loops[loop];
   for (std::size_t i = 0; i < cuts_[loop].size(); ++i) {
     const PlannedCut& cut = cuts_[loop][i];
-    int hidden_shared = 0;
-    for (std::size_t k = 0; k < motions.motions.size(); ++k) {
-      const bool hidden = cut.cut.hides(k, motions.motions.size());
-      hidden_shared += hidden && shared(motions.motions[k].variable, loop) ? 1 : 0;
-    }
     for (std::size_t k = 0; k < cut.enters.size(); ++k) {
       const Variables unknown = unknown_of(cut.enters[k]);
       if (!cut.tells[k] || unknown.size() != 1 || flow_.loops.variables[unknown[0]].kind == VariableKind::ball)
         continue;
       const bool fourth = cut.cut.conditions[k].type == ClosureType::point_line;
       const int freedoms_hidden = cut.cut.a.freedoms + (cut.cut.b ? cut.cut.b->freedoms : 0);
-      const Candidate candidate{{fourth, hidden_shared, -freedoms_hidden, cut.mirror, i}, unknown[0], i};
+      const Candidate candidate{{fourth, hidden_shared(loop, cut.cut), -freedoms_hidden, cut.mirror, i}, unknown[0], i};
       if (!best || candidate.cost < best->cost) best = candidate;
     }
   }
@@ -157,8 +166,8 @@ bool FlowPlan::take_one() {
     if (!candidate || (best && !(candidate->cost < best->cost))) continue;
     best = candidate;
     from = loop;
-    const auto& [fourth, hidden_shared, hidden, mirror, index] = best->cost;
-    if (!fourth && hidden_shared == 0) break;
+    const auto& [fourth, shared_too, hidden, mirror, index] = best->cost;
+    if (!fourth && shared_too == 0) break;
   }
   if (!best) return false;
   const PlannedCut& cut = cuts_[from][best->cut];
@@ -167,85 +176,67 @@ bool FlowPlan::take_one() {
   step.loops = {from};
   const std::uint32_t number = number_of(cut.cut);
   for (std::uint32_t k = 0; k < cut.enters.size(); ++k) {
-    if (unknown_of(cut.enters[k]) != step.unknowns) continue;
-    step.rows.push_back({number, k, cut.enters[k]});
-    for (const std::uint32_t v : cut.enters[k]) {
-      if (known_[v]) insert_sorted(step.given, v);
-    }
+    if (unknown_of(cut.enters[k]) == step.unknowns) take_row(step, cut, number, k);
   }
   step.twins = leaves_cross(from, cut.cut);
   add(std::move(step));
   return true;
 }
 
-/// Two conditions on the same two unknowns: of one cut, or of two loops. Their derivatives must be independent at a
-/// random position.
-bool FlowPlan::take_two() {
-  struct Found {
-    std::tuple<int, int, int> cost;
-    std::uint32_t loop;
-    std::size_t cut, condition;
-  };
-  std::map<Variables, std::vector<Found>> by_pair;
+/// All conditions with two unknowns, by these.
+std::map<FlowPlan::Variables, std::vector<FlowPlan::PairRow>> FlowPlan::rows_of_pairs() const {
+  std::map<Variables, std::vector<PairRow>> rows;
+  const auto ball = [this](std::uint32_t v) { return flow_.loops.variables[v].kind == VariableKind::ball; };
   for (std::uint32_t loop = 0; loop < done_.size(); ++loop) {
-    if (done_[loop]) continue;
-    for (std::size_t i = 0; i < cuts_[loop].size(); ++i) {
+    for (std::size_t i = 0; i < cuts_[loop].size() && !done_[loop]; ++i) {
       const PlannedCut& cut = cuts_[loop][i];
-      const Loop& motions = flow_.loops.loops[loop];
-      int hidden_shared = 0;
-      for (std::size_t k = 0; k < motions.motions.size(); ++k) {
-        const bool hidden = cut.cut.hides(k, motions.motions.size());
-        hidden_shared += hidden && shared(motions.motions[k].variable, loop) ? 1 : 0;
-      }
+      const int hidden = hidden_shared(loop, cut.cut);
       for (std::size_t k = 0; k < cut.enters.size(); ++k) {
         const Variables unknown = unknown_of(cut.enters[k]);
-        const auto ball = [this](std::uint32_t v) { return flow_.loops.variables[v].kind == VariableKind::ball; };
         if (!cut.tells[k] || unknown.size() != 2 || std::any_of(unknown.begin(), unknown.end(), ball)) continue;
         const int fourth = cut.cut.conditions[k].type == ClosureType::point_line ? 1 : 0;
-        by_pair[unknown].push_back({{fourth, cut.mirror ? 1 : 0, hidden_shared}, loop, i, k});
+        rows[unknown].push_back({{fourth, cut.mirror ? 1 : 0, hidden}, loop, i, k});
       }
     }
   }
-  std::optional<std::pair<Found, Found>> best;
-  const auto cost = [](const std::pair<Found, Found>& p) {
-    return std::tuple(std::get<0>(p.first.cost) + std::get<0>(p.second.cost),
-                      std::get<1>(p.first.cost) + std::get<1>(p.second.cost),
-                      std::get<2>(p.first.cost) + std::get<2>(p.second.cost), p.first.loop, p.first.cut, p.second.loop,
-                      p.second.cut, p.first.condition, p.second.condition);
+  return rows;
+}
+
+/// Two conditions on the same two unknowns: of one cut, or of two loops. Their derivatives must be independent at a
+/// random position.
+bool FlowPlan::take_two() {
+  using Pair = std::pair<PairRow, PairRow>;
+  const auto cost = [](const Pair& p) {
+    std::array<int, 3> sum = p.first.cost;
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += p.second.cost[i];
+    return std::tuple(sum, p.first.loop, p.first.cut, p.second.loop, p.second.cut, p.first.condition,
+                      p.second.condition);
   };
-  const Variables* unknowns = nullptr;
-  for (const auto& [pair, rows] : by_pair) {
+  std::optional<std::pair<Pair, Variables>> best;
+  for (const auto& [unknowns, rows] : rows_of_pairs()) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       for (std::size_t j = i + 1; j < rows.size(); ++j) {
         if (rows[i].loop == rows[j].loop && rows[i].cut != rows[j].cut) continue;
-        const std::pair candidate{rows[i], rows[j]};
-        if (best && !(cost(candidate) < cost(*best))) continue;
+        const Pair candidate{rows[i], rows[j]};
+        if (best && !(cost(candidate) < cost(best->first))) continue;
         const std::array both{LoopCondition{&cuts_[rows[i].loop][rows[i].cut].cut, rows[i].condition},
                               LoopCondition{&cuts_[rows[j].loop][rows[j].cut].cut, rows[j].condition}};
-        if (!independent(both, pair)) continue;
-        best = candidate;
-        unknowns = &pair;
+        if (independent(both, unknowns)) best = {candidate, unknowns};
       }
     }
   }
   if (!best) return false;
+  const auto& [one, other] = best->first;
   FlowStep step;
   step.kind = StepKind::two_unknowns;
-  step.unknowns = *unknowns;
-  const PlannedCut& first = cuts_[best->first.loop][best->first.cut];
-  const PlannedCut& second = cuts_[best->second.loop][best->second.cut];
-  const bool same = best->first.loop == best->second.loop;
-  const std::uint32_t number = number_of(first.cut), other = same ? number : number_of(second.cut);
-  const auto take = [&](const PlannedCut& cut, std::uint32_t in, std::size_t condition) {
-    step.rows.push_back({in, static_cast<std::uint32_t>(condition), cut.enters[condition]});
-    for (const std::uint32_t v : cut.enters[condition]) {
-      if (known_[v]) insert_sorted(step.given, v);
-    }
-  };
-  take(first, number, best->first.condition);
-  take(second, other, best->second.condition);
-  step.loops = {best->first.loop};
-  if (!same) insert_sorted(step.loops, best->second.loop);
+  step.unknowns = best->second;
+  const PlannedCut& cut = cuts_[one.loop][one.cut];
+  const std::uint32_t number = number_of(cut.cut);
+  take_row(step, cut, number, one.condition);
+  const PlannedCut& second = cuts_[other.loop][other.cut];
+  take_row(step, second, one.loop == other.loop ? number : number_of(second.cut), other.condition);
+  step.loops = {one.loop};
+  insert_sorted(step.loops, other.loop);
   add(std::move(step));
   return true;
 }
@@ -265,9 +256,7 @@ bool FlowPlan::take_spin() {
     step.unknowns = {loop.motions[joints[1].first].variable};
     step.cut = number_of({index, joints[0], joints[1], {}});
     step.loops = {index};
-    for (const LoopMotion& motion : loop.motions) {
-      if (known_[motion.variable]) insert_sorted(step.given, motion.variable);
-    }
+    give_known(step, index);
     add(std::move(step));
     return true;
   }
@@ -306,17 +295,11 @@ bool FlowPlan::take_block() {
       const PlannedCut& cut = cuts_[share.loop][*share.cut];
       const std::uint32_t number = number_of(cut.cut);
       for (std::uint32_t k = 0; k < cut.enters.size(); ++k) {
-        if (!cut.tells[k]) continue;
-        step.rows.push_back({number, k, cut.enters[k]});
-        for (const std::uint32_t v : cut.enters[k]) {
-          if (known_[v]) insert_sorted(step.given, v);
-        }
+        if (cut.tells[k]) take_row(step, cut, number, k);
       }
     } else {
       step.whole_loops.push_back(share.loop);
-      for (const LoopMotion& motion : flow_.loops.loops[share.loop].motions) {
-        if (known_[motion.variable]) insert_sorted(step.given, motion.variable);
-      }
+      give_known(step, share.loop);
     }
   }
   add(std::move(step));

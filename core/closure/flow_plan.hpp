@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -28,7 +29,6 @@ struct PlannedCut {
   /// Whether something unknown changes it where the loop is closed. One that only changes elsewhere has a double root
   /// there: it tells solutions from others, but finds none.
   std::vector<bool> tells;
-  int isolated = 0;
   bool mirror = false;
 };
 
@@ -54,10 +54,15 @@ class FlowPlan {
   std::vector<std::vector<std::uint32_t>> entering(const LoopCut& cut, Positions positions);
 
   int conditions_of(std::uint32_t loop);
+  int rank_of_loop(std::uint32_t loop);
   struct LoopCondition {
     const LoopCut* cut;
     std::size_t condition;
   };
+  template <typename Function>
+  void for_each_rate(const LoopCut& cut, const Loop& loop, std::span<const Place<double>> at, const Function& f) const;
+  std::size_t rank_of(const LoopCut& cut, const Variables& by);
+  int hidden_shared(std::uint32_t loop, const LoopCut& cut) const;
   bool independent(std::span<const LoopCondition> conditions, const Variables& by);
   /// What a loop adds to a numerical block.
   struct Share {
@@ -75,6 +80,9 @@ class FlowPlan {
   bool take_spin();
   bool take_block();
   void hold_one();
+  void give(FlowStep& step, const Variables& variables) const;
+  void give_known(FlowStep& step, std::uint32_t loop) const;
+  void take_row(FlowStep& step, const PlannedCut& cut, std::uint32_t number, std::size_t condition) const;
   void add(FlowStep step);
   std::uint32_t number_of(const LoopCut& cut);
   void mark_only_here();
@@ -85,6 +93,13 @@ class FlowPlan {
     std::uint32_t unknown = 0;
     std::size_t cut = 0;  ///< in cuts_ of its loop
   };
+  /// A condition with two unknowns: point-line conditions, mirror images and shared joints speak against it.
+  struct PairRow {
+    std::array<int, 3> cost{};
+    std::uint32_t loop = 0;
+    std::size_t cut = 0, condition = 0;
+  };
+  std::map<Variables, std::vector<PairRow>> rows_of_pairs() const;
   std::optional<Candidate> best_single(std::uint32_t loop) const;
 
   Flow& flow_;

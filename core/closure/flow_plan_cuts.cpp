@@ -4,6 +4,8 @@
 #include <limits>
 #include <numbers>
 
+#include <Eigen/QR>
+
 #include "closure/flow_plan.hpp"
 #include "closure/loop_kind.hpp"
 
@@ -48,6 +50,12 @@ bool overlap(const CutJoint& a, const CutJoint& b, std::size_t n) {
   return false;
 }
 
+Eigen::Index rank_of(const Eigen::MatrixXd& matrix) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
+  qr.setThreshold(tolerance);
+  return qr.rank();
+}
+
 }  // namespace
 
 /// All runs of unknown motions that make a joint.
@@ -82,32 +90,41 @@ Loop FlowPlan::closed(std::uint32_t index, std::span<const Place<double>> at) co
   return loop;
 }
 
-/// For each condition the variables that change it, in any positions or in closed ones.
-std::vector<std::vector<std::uint32_t>> FlowPlan::entering(const LoopCut& cut, Positions positions) {
+/// Calls f(condition, column, rate) for each condition of a cut and each column of its ways: by how much the condition
+/// changes with the column's rate, in radians' size and relative to the condition's.
+template <typename Function>
+void FlowPlan::for_each_rate(const LoopCut& cut, const Loop& loop, std::span<const Place<double>> at,
+                             const Function& f) const {
   const std::span<const Variable> variables = flow_.loops.variables;
-  std::vector<std::vector<std::uint32_t>> result(cut.conditions.size());
-  std::vector<WalkColumn<double>> columns;
-  for (int trial = 0; trial < trials; ++trial) {
-    const auto at = random_places(variables, flow_.length, random_);
-    const Loop loop = positions == Positions::closed ? closed(cut.loop, at) : flow_.loops.loops[cut.loop];
-    const CutWalk<double> walk(loop, variables, at);
-    for (const bool lower : {true, false}) {
-      columns.clear();
-      const Pose a_in_b = lower ? walk.lower(cut, &columns) : walk.upper(cut, &columns);
-      for (const WalkColumn<double>& column : columns) {
-        const Vector3 linear = column.along + column.angular.cross(a_in_b.position - column.point);
-        const bool slide = variables[column.variable].kind == VariableKind::slide;
-        for (std::size_t k = 0; k < cut.conditions.size(); ++k) {
-          const double rate = change(cut.conditions[k], a_in_b, column.angular, linear) * (slide ? flow_.length : 1.0);
-          const double relative = std::abs(rate) / size_of(cut.conditions[k], flow_.length);
-          if (relative > tolerance) {
-            insert_sorted(result[k], column.variable);
-          } else if (relative > rounding) {
-            flow_.doubtful = true;
-          }
-        }
+  std::vector<WayColumn<double>> columns;
+  for (const bool lower : {true, false}) {
+    columns.clear();
+    const Way way = lower ? lower_way(loop, variables, cut) : upper_way(loop, variables, cut);
+    const Pose a_in_b = walk<double>(way, at, &columns);
+    for (const WayColumn<double>& column : columns) {
+      const double unit = variables[column.variable].kind == VariableKind::slide ? flow_.length : 1.0;
+      for (std::size_t k = 0; k < cut.conditions.size(); ++k) {
+        const ClosureCondition& condition = cut.conditions[k];
+        const double rate = change<double>(condition, a_in_b, column.angular, column.velocity(a_in_b.position));
+        f(k, column, (lower ? unit : -unit) * rate / size_of(condition, flow_.length));
       }
     }
+  }
+}
+
+/// For each condition the variables that change it, in any positions or in closed ones.
+std::vector<std::vector<std::uint32_t>> FlowPlan::entering(const LoopCut& cut, Positions positions) {
+  std::vector<std::vector<std::uint32_t>> result(cut.conditions.size());
+  for (int trial = 0; trial < trials; ++trial) {
+    const auto at = random_places(flow_.loops.variables, flow_.length, random_);
+    const Loop loop = positions == Positions::closed ? closed(cut.loop, at) : flow_.loops.loops[cut.loop];
+    for_each_rate(cut, loop, at, [&](std::size_t condition, const WayColumn<double>& column, double rate) {
+      if (std::abs(rate) > tolerance) {
+        insert_sorted(result[condition], column.variable);
+      } else if (std::abs(rate) > rounding) {
+        flow_.doubtful = true;
+      }
+    });
   }
   return result;
 }
@@ -118,7 +135,6 @@ PlannedCut FlowPlan::planned(std::uint32_t loop, const CutJoint& a, const std::o
   const auto all = b ? pair_conditions(a.shape, b->shape) : joint_conditions(a.shape);
   result.cut = {loop, a, b, {all.begin(), all.end()}};
   result.mirror = b && up_to_mirror(a.shape, b->shape);
-  result.isolated = b ? isolated_freedoms(a.shape, b->shape) : 0;
   const auto enters = entering(result.cut, Positions::any);
   const auto changed = entering(result.cut, Positions::closed);
   std::vector<ClosureCondition> kept;
@@ -167,29 +183,42 @@ bool FlowPlan::leaves_cross(std::uint32_t loop, const LoopCut& cut) const {
 
 /// Whether two conditions have independent derivatives by two variables at a random position.
 bool FlowPlan::independent(std::span<const LoopCondition> conditions, const Variables& by) {
-  const std::span<const Variable> variables = flow_.loops.variables;
-  const auto at = random_places(variables, flow_.length, random_);
+  const auto at = random_places(flow_.loops.variables, flow_.length, random_);
   Eigen::Matrix2d jacobian = Eigen::Matrix2d::Zero();
-  std::vector<WalkColumn<double>> columns;
   for (Eigen::Index i = 0; i < 2; ++i) {
-    const LoopCut& cut = *conditions[static_cast<std::size_t>(i)].cut;
-    const ClosureCondition& condition = cut.conditions[conditions[static_cast<std::size_t>(i)].condition];
-    const CutWalk<double> walk(flow_.loops.loops[cut.loop], variables, at);
-    for (const bool lower : {true, false}) {
-      columns.clear();
-      const Pose a_in_b = lower ? walk.lower(cut, &columns) : walk.upper(cut, &columns);
-      for (const WalkColumn<double>& column : columns) {
-        const auto found = std::find(by.begin(), by.end(), column.variable);
-        if (found == by.end()) continue;
-        const Vector3 linear = column.along + column.angular.cross(a_in_b.position - column.point);
-        const double slide = variables[column.variable].kind == VariableKind::slide ? flow_.length : 1.0;
-        jacobian(i, found - by.begin()) += (lower ? 1.0 : -1.0) * slide / size_of(condition, flow_.length) *
-                                           change(condition, a_in_b, column.angular, linear);
-      }
-    }
+    const LoopCondition& row = conditions[static_cast<std::size_t>(i)];
+    for_each_rate(*row.cut, flow_.loops.loops[row.cut->loop], at,
+                  [&](std::size_t condition, const WayColumn<double>& column, double rate) {
+                    const auto found = std::find(by.begin(), by.end(), column.variable);
+                    if (condition == row.condition && found != by.end()) jacobian(i, found - by.begin()) += rate;
+                  });
   }
   const double size = jacobian.norm();
   return std::abs(jacobian.determinant()) > tolerance * size * size;
+}
+
+/// How many of a cut's conditions are independent in some variables, at a random position where the loop is closed.
+std::size_t FlowPlan::rank_of(const LoopCut& cut, const Variables& by) {
+  const auto at = random_places(flow_.loops.variables, flow_.length, random_);
+  Eigen::MatrixXd jacobian =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(cut.conditions.size()), 3 * static_cast<Eigen::Index>(by.size()));
+  for_each_rate(cut, closed(cut.loop, at), at,
+                [&](std::size_t condition, const WayColumn<double>& column, double rate) {
+                  const auto found = std::find(by.begin(), by.end(), column.variable);
+                  if (found == by.end()) return;
+                  jacobian(static_cast<Eigen::Index>(condition), 3 * (found - by.begin()) + column.rate) += rate;
+                });
+  return static_cast<std::size_t>(koppel::rank_of(jacobian));
+}
+
+/// How many of the motions that a cut hides belong to other loops that are not done, too.
+int FlowPlan::hidden_shared(std::uint32_t index, const LoopCut& cut) const {
+  const std::vector<LoopMotion>& motions = flow_.loops.loops[index].motions;
+  int count = 0;
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    if (cut.hides(k, motions.size()) && shared(motions[k].variable, index)) ++count;
+  }
+  return count;
 }
 
 /// What enters a numerical block on behalf of a loop: the conditions of a cut that hides what no other loop needs, or
@@ -197,23 +226,17 @@ bool FlowPlan::independent(std::span<const LoopCondition> conditions, const Vari
 FlowPlan::Share FlowPlan::share_of(std::uint32_t loop) {
   const Variables unknown = unknown_in(loop);
   const int count = conditions_of(loop);
-  Share best{loop, std::nullopt, unknown, static_cast<std::size_t>(count)};
-  int least = freedoms(unknown) - count;
-  const Loop& motions = flow_.loops.loops[loop];
+  const int rank = rank_of_loop(loop);
+  Share best{loop, std::nullopt, unknown, static_cast<std::size_t>(rank)};
+  int least = freedoms(unknown) - rank;
   for (std::size_t i = 0; i < cuts_[loop].size(); ++i) {
     const PlannedCut& cut = cuts_[loop][i];
-    if (cut.mirror || (count == 6 && turned_over(cut.cut))) continue;
-    bool exclusive = true;
-    for (std::size_t k = 0; k < motions.motions.size(); ++k) {
-      exclusive = exclusive && !(cut.cut.hides(k, motions.motions.size()) && shared(motions.motions[k].variable, loop));
-    }
-    if (!exclusive) continue;
+    if (cut.mirror || (count == 6 && turned_over(cut.cut)) || hidden_shared(loop, cut.cut) > 0) continue;
     Variables core;
-    for (std::size_t k = 0; k < cut.enters.size(); ++k) {
-      for (const std::uint32_t v : unknown_of(cut.enters[k])) insert_sorted(core, v);
+    for (const auto& enters : cut.enters) {
+      for (const std::uint32_t v : unknown_of(enters)) insert_sorted(core, v);
     }
-    const auto telling = static_cast<std::size_t>(std::count(cut.tells.begin(), cut.tells.end(), true));
-    const auto rows = std::min(telling, static_cast<std::size_t>(freedoms(core)));
+    const std::size_t rows = rank_of(cut.cut, core);
     const int left = freedoms(core) - static_cast<int>(rows);
     const bool smaller = best.cut ? freedoms(core) < freedoms(best.core) : true;
     if (left > least || (left == least && !smaller)) continue;
@@ -223,14 +246,29 @@ FlowPlan::Share FlowPlan::share_of(std::uint32_t loop) {
   return best;
 }
 
+/// How many conditions close a loop, by the motions that its joints make.
 int FlowPlan::conditions_of(std::uint32_t index) {
-  const Loop& loop = flow_.loops.loops[index];
   const auto at = random_places(flow_.loops.variables, flow_.length, random_);
-  std::vector<WalkColumn<double>> walked;
-  CutWalk<double>(loop, flow_.loops.variables, at).round(&walked);
+  std::vector<WayColumn<double>> walked;
+  walk<double>(round_way(flow_.loops.loops[index], flow_.loops.variables), at, &walked);
   std::vector<Column> columns;
-  for (const WalkColumn<double>& column : walked) columns.push_back({column.angular, column.along, column.point});
+  for (const WayColumn<double>& column : walked) columns.push_back({column.angular, column.along, column.point});
   return loop_kind(columns, flow_.length).conditions;
+}
+
+/// How many of them its unknowns can meet, at a random position where it is closed: not the spin of a link.
+int FlowPlan::rank_of_loop(std::uint32_t index) {
+  const auto at = random_places(flow_.loops.variables, flow_.length, random_);
+  std::vector<WayColumn<double>> columns;
+  walk<double>(round_way(closed(index, at), flow_.loops.variables), at, &columns);
+  std::erase_if(columns, [this](const WayColumn<double>& column) { return known_[column.variable]; });
+  Eigen::MatrixXd screws(6, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const bool slide = flow_.loops.variables[columns[i].variable].kind == VariableKind::slide;
+    screws.col(static_cast<Eigen::Index>(i)) << columns[i].angular * (slide ? 0.0 : 1.0),
+        columns[i].velocity(Vector3::Zero()) / (slide ? 1.0 : flow_.length);
+  }
+  return static_cast<int>(koppel::rank_of(screws));
 }
 
 }  // namespace koppel

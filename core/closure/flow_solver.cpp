@@ -24,10 +24,10 @@ bool second_order(const ClosureCondition& condition, VariableKind kind) {
 
 double FlowSolver::residual(const FlowRow& row, const std::vector<Place<double>>& at) const {
   const LoopCut& cut = flow_.cuts[row.cut];
-  const ClosureCondition& condition = cut.conditions[row.condition];
-  const CutWalk<double> walk(flow_.loops.loops[cut.loop], flow_.loops.variables, at);
-  const double open = value(condition, walk.lower(cut)) - value(condition, walk.upper(cut));
-  return open / size_of(condition, flow_.length);
+  const Loop& loop = flow_.loops.loops[cut.loop];
+  const std::span<const Variable> variables = flow_.loops.variables;
+  return openness(cut.conditions[row.condition], lower_way(loop, variables, cut), upper_way(loop, variables, cut), at,
+                  flow_.length);
 }
 
 StepSolutions FlowSolver::solve(const FlowStep& step, const Eigen::VectorXd& q) {
@@ -48,8 +48,7 @@ StepSolutions FlowSolver::one_unknown(const FlowStep& step, const Eigen::VectorX
     std::remove_cvref_t<decltype(points)> values{};
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double x = unit * points[i];
-      at[step.unknowns[0]] = variable.kind == VariableKind::turn ? Place<double>{std::cos(x), std::sin(x), 0.0, 0.0}
-                                                                 : Place<double>{x, 0.0, 0.0, 0.0};
+      at[step.unknowns[0]] = place_at(variable.kind, x);
       values[i] = residual(row, at);
     }
     return values;
@@ -103,8 +102,7 @@ StepSolutions FlowSolver::two_unknowns(const FlowStep& step, const Eigen::Vector
     }
   }
   const auto set = [&](std::size_t i, double x) {
-    at[step.unknowns[i]] = unknowns[i].kind == Unknown::Kind::angle ? Place<double>{std::cos(x), std::sin(x), 0.0, 0.0}
-                                                                    : Place<double>{x, 0.0, 0.0, 0.0};
+    at[step.unknowns[i]] = place_at(flow_.loops.variables[step.unknowns[i]].kind, x);
   };
   std::array<Condition2, 2> conditions;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -139,7 +137,7 @@ StepSolutions FlowSolver::joint(const FlowStep& step, const Eigen::VectorXd& q) 
   const LoopCut& cut = flow_.cuts[step.cut];
   const Loop& loop = flow_.loops.loops[cut.loop];
   const auto at = places(flow_.loops.variables, q.data());
-  const Pose moved = CutWalk<double>(loop, flow_.loops.variables, at).lower(cut).inverse();
+  const Pose moved = walk<double>(lower_way(loop, flow_.loops.variables, cut), at).inverse();
   StepSolutions result;
   result.positions.push_back(q);
   Eigen::VectorXd& found = result.positions.back();
@@ -171,14 +169,15 @@ StepSolutions FlowSolver::spin(const FlowStep& step, const Eigen::VectorXd& q) {
   const LoopCut& cut = flow_.cuts[step.cut];
   const Loop& loop = flow_.loops.loops[cut.loop];
   const auto at = places(flow_.loops.variables, q.data());
-  const CutWalk<double> walk(loop, flow_.loops.variables, at);
   const LoopMotion& motion = loop.motions[cut.b->first];
   const Variable& variable = flow_.loops.variables[motion.variable];
   const Vector4 before = q.segment<4>(variable.q);
   Matrix3 now = rotation_of_quaternion<double>(before);
   if (motion.inverse) now.transposeInPlace();
   // Ball b must bring the point of ball a, as it is seen from behind b, to where it is seen from before b.
-  const Vector3 from = now * walk.lower(cut).position, to = walk.upper(cut).position;
+  const std::span<const Variable> variables = flow_.loops.variables;
+  const Vector3 from = now * walk<double>(lower_way(loop, variables, cut), at).position;
+  const Vector3 to = walk<double>(upper_way(loop, variables, cut), at).position;
   now = Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix() * now;
   if (motion.inverse) now.transposeInPlace();
   Vector4 quaternion = quaternion_of_rotation<double>(now);

@@ -19,8 +19,7 @@ std::vector<Place<double>> places_at(std::span<const Variable> all, std::span<co
     if (all[i].kind != VariableKind::slide) at[i][0] = 1.0;
   }
   for (std::size_t i = 0; i < variables.size(); ++i) {
-    const bool turn = all[variables[i]].kind == VariableKind::turn;
-    at[variables[i]] = turn ? Place<double>{std::cos(x[i]), std::sin(x[i]), 0, 0} : Place<double>{x[i], 0, 0, 0};
+    at[variables[i]] = place_at(all[variables[i]].kind, x[i]);
   }
   return at;
 }
@@ -65,16 +64,13 @@ bool FlowTracker::compile(const Flow& flow, const FlowStep& from, Step& step) co
   for (const FlowRow& from_row : from.rows) {
     const LoopCut& cut = flow.cuts[from_row.cut];
     const Loop& loop = flow.loops.loops[cut.loop];
-    Row row{cut.conditions[from_row.condition], std::nullopt, MovingWalk::lower(loop, variables_, cut),
-            MovingWalk::upper(loop, variables_, cut)};
+    Row row{cut.conditions[from_row.condition], std::nullopt, lower_way(loop, variables_, cut),
+            upper_way(loop, variables_, cut)};
     const auto variables = with_last(from_row.variables, from.unknowns.back());
     const bool small = variables.size() <= written_out || from.kind == StepKind::two_unknowns;
     if (small) {
       row.form = ProductForm::of(variables, variables_, length_, [&](std::span<const double> x) {
-        const auto at = places_at(variables_, variables, x);
-        const CutWalk<double> walk(loop, variables_, at);
-        const double open = value(row.condition, walk.lower(cut)) - value(row.condition, walk.upper(cut));
-        return open / size_of(row.condition, length_);
+        return openness(row.condition, row.lower, row.upper, places_at(variables_, variables, x), length_);
       });
     }
     if (from.kind == StepKind::two_unknowns && !row.form) return false;
@@ -86,7 +82,7 @@ bool FlowTracker::compile(const Flow& flow, const FlowStep& from, Step& step) co
 void FlowTracker::compile_joint(const Flow& flow, const FlowStep& from, Step& step) const {
   const LoopCut& cut = flow.cuts[from.cut];
   const Loop& loop = flow.loops.loops[cut.loop];
-  step.around = MovingWalk::lower(loop, variables_, cut);
+  step.around = lower_way(loop, variables_, cut);
   step.unknowns.clear();
   for (std::size_t i = 0; i < cut.a.count; ++i) {
     const LoopMotion& motion = loop.motions[(cut.a.first + i) % loop.motions.size()];

@@ -50,14 +50,14 @@ class FlowTracker {
   struct Row {
     ClosureCondition condition;
     std::optional<ProductForm> form;
-    MovingWalk lower, upper;
+    Way lower, upper;
   };
   struct Step {
     StepKind kind = StepKind::one_unknown;
     std::vector<std::uint32_t> unknowns;
     std::vector<std::uint32_t> given;
     std::vector<Row> rows;
-    MovingWalk around;          ///< of a joint: from behind it to before it
+    Way around;                 ///< of a joint: from behind it to before it
     bool against = false;       ///< of a joint: its slide points against its turn
     std::vector<bool> inverse;  ///< of a joint: of each unknown that is a ball
   };

@@ -40,8 +40,8 @@ double FlowTracker::error_through(const ProductForm& form, std::uint32_t unknown
 /// The same of a condition that is walked along: the greatest error that comes through, as they have common causes.
 double FlowTracker::error_through(const Row& row, std::uint32_t unknown, double slope) const {
   const double size = size_of(row.condition, length_);
-  const double through = std::max(row.lower.sensitivity(places_, errors_, unknown, row.condition),
-                                  row.upper.sensitivity(places_, errors_, unknown, row.condition));
+  const double through = std::max(sensitivity(row.lower, places_, errors_, unknown, row.condition),
+                                  sensitivity(row.upper, places_, errors_, unknown, row.condition));
   constexpr double roundings = 32.0;
   return (roundings * eps + through / size) / std::abs(slope);
 }
@@ -52,7 +52,8 @@ double FlowTracker::slope(const Row& row, std::uint32_t variable) {
     const double unit = variables_[variable].kind == VariableKind::slide ? length_ : 1.0;
     return unit * slope_in(row.form->last(bases_), bases_[variable]);
   }
-  const MovingWalk::Slope lower = row.lower.slope(places_, variable), upper = row.upper.slope(places_, variable);
+  const WaySlope lower = koppel::slope(row.lower, places_, variable),
+                 upper = koppel::slope(row.upper, places_, variable);
   const double unit = variables_[variable].kind == VariableKind::slide ? length_ : 1.0;
   return unit / size_of(row.condition, length_) *
          (change(row.condition, lower.pose, lower.angular, lower.linear) -
@@ -160,7 +161,7 @@ bool FlowTracker::solve_walk(const Row& row, std::uint32_t x) {
   const double unit = is_slide ? length_ : 1.0, size = size_of(row.condition, length_);
   double first_slope = 0.0, slope_here = 0.0, open = 0.0, moved = 0.0, last = 1.0;
   for (int i = 0; i < most_iterations; ++i) {
-    const MovingWalk::Slope lower = row.lower.slope(places_, x), upper = row.upper.slope(places_, x);
+    const WaySlope lower = koppel::slope(row.lower, places_, x), upper = koppel::slope(row.upper, places_, x);
     open = (value(row.condition, lower.pose) - value(row.condition, upper.pose)) / size;
     slope_here = unit / size *
                  (change(row.condition, lower.pose, lower.angular, lower.linear) -
@@ -182,14 +183,15 @@ bool FlowTracker::solve_walk(const Row& row, std::uint32_t x) {
   const auto rate_of = [&](const MovingPose& p) {
     return change(row.condition, p.pose, p.angular_velocity, p.velocity) / size;
   };
-  const double v = -unit * (rate_of(row.lower.end(places_)) - rate_of(row.upper.end(places_))) / slope_here;
+  const double v =
+      -unit * (rate_of(moving_end(row.lower, places_)) - rate_of(moving_end(row.upper, places_))) / slope_here;
   set_motion(x, v, 0.0);
   const auto acceleration_of = [&](const MovingPose& p) {
     return (change(row.condition, p.pose, p.angular_acceleration, p.acceleration) +
             quadratic_change(row.condition, p.pose, p.angular_velocity, p.velocity)) /
            size;
   };
-  const double bent = acceleration_of(row.lower.end(places_)) - acceleration_of(row.upper.end(places_));
+  const double bent = acceleration_of(moving_end(row.lower, places_)) - acceleration_of(moving_end(row.upper, places_));
   set_motion(x, v, -unit * bent / slope_here);
   accuracy_.residual = std::max(accuracy_.residual, std::abs(open));
   accuracy_.condition = std::max(accuracy_.condition, 1.0 / std::abs(slope_here));
@@ -268,7 +270,7 @@ bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
 
 /// The walk leads from behind the joint to before it, so that it shows the joint's motion backwards.
 void FlowTracker::read_joint(const Step& step) {
-  const MovingPose before = step.around.end(places_);
+  const MovingPose before = moving_end(step.around, places_);
   // What the worst of the given coordinates leaves.
   double error = 32.0 * eps;
   for (const std::uint32_t v : step.given) {

@@ -166,9 +166,8 @@ std::string loop_words(const std::vector<std::uint32_t>& loops) {
 }
 
 std::size_t unknowns_in(const Flow& flow, const FlowStep& step) {
-  return std::accumulate(step.unknowns.begin(), step.unknowns.end(), std::size_t{0}, [&](std::size_t sum, auto v) {
-    return sum + (flow.loops.variables[v].kind == VariableKind::ball ? std::size_t{3} : std::size_t{1});
-  });
+  return std::accumulate(step.unknowns.begin(), step.unknowns.end(), std::size_t{0},
+                         [&](std::size_t sum, auto v) { return sum + freedoms_of(flow.loops.variables[v].kind); });
 }
 
 std::string solver_words(const Mechanism& mechanism, const Flow& flow, const FlowStep& step) {

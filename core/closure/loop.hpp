@@ -17,6 +17,9 @@ namespace koppel {
 /// An unknown, or known, coordinate of an elementary motion. Balls have four numbers in q and three rates.
 enum class VariableKind { turn, slide, ball };
 
+/// Its rates.
+constexpr std::uint32_t freedoms_of(VariableKind kind) { return kind == VariableKind::ball ? 3 : 1; }
+
 struct Variable {
   VariableKind kind = VariableKind::turn;
   std::uint32_t q = 0, v = 0;  ///< where it stands in the state

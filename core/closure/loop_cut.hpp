@@ -19,6 +19,8 @@ namespace koppel {
 template <typename T>
 using Place = std::array<T, 4>;
 
+/// The place of a turn or slide with the coordinate x.
+Place<double> place_at(VariableKind kind, double x);
 /// The places of all variables at the coordinates q of a state.
 std::vector<Place<double>> places(std::span<const Variable> variables, const double* q);
 Place<double> place(const Variable& variable, const double* q);
@@ -63,85 +65,72 @@ PoseT<T> as(const Pose& pose) {
   return {pose.rotation.template cast<T>(), pose.position.template cast<T>()};
 }
 
-/// One variable's screw on a walk, in the axes of its start: the origin r of the walk's end moves with the velocity
-/// along + angular x (r - point) for one of the variable's rate.
+/// One variable's screw on a way, in the axes of its start: for one of the variable's rate the origin r of the way's
+/// end moves with the velocity along + angular x (r - point).
 template <typename T>
-struct WalkColumn {
+struct WayColumn {
   std::uint32_t variable = 0;
   std::uint8_t rate = 0;  ///< of a ball: about its x, y, z
   Vector3T<T> angular, along, point;
+
+  Vector3T<T> velocity(const Vector3T<T>& r) const { return along + cross<T>(angular, r - point); }
 };
 
-/// The pose of frame a in frame b by either of the two ways from b to a. Columns are appended if wanted.
+/// A motion on a way, and the constant transformation before it.
+struct Leg {
+  std::uint32_t variable = 0;
+  VariableKind kind = VariableKind::turn;
+  bool inverse = false;  ///< the way passes the motion backwards
+  Pose to;
+};
+
+/// A way through a loop, from one frame to another.
+struct Way {
+  std::vector<Leg> legs;
+  Pose last;  ///< behind the last leg
+};
+
+/// The two ways from frame b of a cut to its frame a: forwards from behind b to before a, at a single joint all the way
+/// round; and backwards from before b to behind a, at a single joint nothing, as the frames coincide.
+Way lower_way(const Loop& loop, std::span<const Variable> variables, const LoopCut& cut);
+Way upper_way(const Loop& loop, std::span<const Variable> variables, const LoopCut& cut);
+/// Once round, from before the first motion to behind the last.
+Way round_way(const Loop& loop, std::span<const Variable> variables);
+
+/// frame = frame * (what the leg's motion does, without the transformation before it). Columns are appended if wanted.
 template <typename T>
-class CutWalk {
- public:
-  CutWalk(const Loop& loop, std::span<const Variable> variables, std::span<const Place<T>> at)
-      : loop_(loop), variables_(variables), at_(at) {}
-
-  /// Forwards from behind b to before a; at a single joint all the way round.
-  PoseT<T> lower(const LoopCut& cut, std::vector<WalkColumn<T>>* columns = nullptr) const {
-    const CutJoint& start = cut.b ? *cut.b : cut.a;
-    const std::size_t n = loop_.motions.size(), first = start.first + start.count;
-    const std::size_t count = (cut.a.first + 2 * n - first) % n;
-    PoseT<T> frame = as<T>(start.after.inverse());
-    for (std::size_t i = 0; i < count; ++i) {
-      const LoopMotion& motion = loop_.motions[(first + i) % n];
-      frame = frame * as<T>(motion.to);
-      pass(motion, false, frame, columns);
+void pass(const Leg& leg, const Place<T>& at, PoseT<T>& frame, std::vector<WayColumn<T>>* columns) {
+  const Matrix3T<T> before = frame.rotation;
+  apply(leg.kind, at, leg.inverse, frame);
+  if (columns == nullptr) return;
+  const T sign = leg.inverse ? T(-1) : T(1);
+  if (leg.kind == VariableKind::ball) {
+    // Rates of a ball are about axes of its far side.
+    const Matrix3T<T>& axes = leg.inverse ? before : frame.rotation;
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      columns->push_back({leg.variable, k, sign * axes.col(k), Vector3T<T>::Zero(), frame.position});
     }
-    return frame * as<T>(cut.a.before);
+  } else {
+    const Vector3T<T> axis = sign * frame.rotation.col(2), none = Vector3T<T>::Zero();
+    const bool turn = leg.kind == VariableKind::turn;
+    columns->push_back({leg.variable, 0, turn ? axis : none, turn ? none : axis, frame.position});
   }
+}
 
-  /// Backwards from before b to behind a; at a single joint there is nothing on the way, and the frames coincide.
-  PoseT<T> upper(const LoopCut& cut, std::vector<WalkColumn<T>>* columns = nullptr) const {
-    if (!cut.b) return {};
-    const std::size_t n = loop_.motions.size(), first = cut.a.first + cut.a.count;
-    const std::size_t count = (cut.b->first + 2 * n - first) % n;
-    PoseT<T> frame = as<T>(cut.b->before.inverse());
-    for (std::size_t i = count; i-- > 0;) {
-      const LoopMotion& motion = loop_.motions[(first + i) % n];
-      pass(motion, true, frame, columns);
-      frame = frame * as<T>(motion.to.inverse());
-    }
-    return frame * as<T>(cut.a.after);
+/// The end of a way in its start.
+template <typename T>
+PoseT<T> walk(const Way& way, std::span<const Place<T>> at, std::vector<WayColumn<T>>* columns = nullptr) {
+  PoseT<T> frame;
+  for (const Leg& leg : way.legs) {
+    frame = frame * as<T>(leg.to);
+    pass(leg, at[leg.variable], frame, columns);
   }
+  return frame * as<T>(way.last);
+}
 
-  /// Once round, from before the first motion to behind the last.
-  PoseT<T> round(std::vector<WalkColumn<T>>* columns = nullptr) const {
-    PoseT<T> frame;
-    for (const LoopMotion& motion : loop_.motions) {
-      frame = frame * as<T>(motion.to);
-      pass(motion, false, frame, columns);
-    }
-    return frame;
-  }
-
- private:
-  void pass(const LoopMotion& motion, bool backwards, PoseT<T>& frame, std::vector<WalkColumn<T>>* columns) const {
-    const VariableKind kind = variables_[motion.variable].kind;
-    const bool inverse = (kind == VariableKind::ball && motion.inverse) != backwards;
-    const Matrix3T<T> before = frame.rotation;
-    apply(kind, at_[motion.variable], inverse, frame);
-    if (columns == nullptr) return;
-    const T sign = inverse ? T(-1) : T(1);
-    if (kind == VariableKind::ball) {
-      // Rates of a ball are about axes of its far side.
-      const Matrix3T<T>& axes = inverse ? before : frame.rotation;
-      for (std::uint8_t k = 0; k < 3; ++k) {
-        columns->push_back({motion.variable, k, sign * axes.col(k), Vector3T<T>::Zero(), frame.position});
-      }
-    } else {
-      const Vector3T<T> axis = sign * frame.rotation.col(2);
-      const bool turn = kind == VariableKind::turn;
-      columns->push_back(
-          {motion.variable, 0, turn ? axis : Vector3T<T>::Zero(), turn ? Vector3T<T>::Zero() : axis, frame.position});
-    }
-  }
-
-  const Loop& loop_;
-  std::span<const Variable> variables_;
-  std::span<const Place<T>> at_;
-};
+/// By how much a condition is open: its value on the lower way less that on the upper one, over its size. Zero where
+/// the loop is closed.
+double openness(const ClosureCondition& condition, const Way& lower, const Way& upper,
+                std::span<const Place<double>> at, double length);
 
 }  // namespace koppel

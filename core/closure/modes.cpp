@@ -37,11 +37,13 @@ class Search {
   Search(Work& work, const State& state, const ModeOptions& options, const Flow& flow, Modes& modes)
       : work_(work), state_(state), options_(options), flow_(flow), modes_(modes), solver_(flow, continuation()) {}
 
+  bool stopped() const { return stopped_; }
+
   /// False: a plugin failed.
   bool run() {
-    modes_.complete = !flow_.doubtful;
+    modes_.complete = true;
     modes_.held = flow_.held.size();
-    if (flow_.doubtful) step_why_ = "axes that are taken for parallel or meeting are so only nearly";
+    if (flow_.doubtful) uncertain("axes that are taken for parallel or meeting are so only nearly");
     const auto nq = static_cast<Eigen::Index>(work_.mechanism->nq);
     // Imaginary joints start where nothing has moved.
     Eigen::VectorXd q = Eigen::VectorXd::Zero(nq + 7 * static_cast<Eigen::Index>(flow_.loops.imaginary.size()));
@@ -88,12 +90,11 @@ class Search {
     }
     const FlowStep& step = flow_.steps[number];
     StepSolutions found = solver_.solve(step, q);
-    if (!found.complete) modes_.complete = false;
+    if (!found.complete) uncertain(found.why);
     if (found.undetermined && step.kind != StepKind::spin) {
-      modes_.complete = false;
-      found.why = "somewhere a coordinate does not matter and was left as it is";
+      uncertain("somewhere a coordinate does not matter and was left as it is");
     }
-    if (!found.why.empty() && step_why_.empty()) step_why_ = found.why;
+    if (known_by_.empty()) known_by_ = found.why;
     if (found.positions.empty() && found.missed_by) modes_.missed_by.push_back(*found.missed_by);
     if (step.twins && !list_twins_ && found.positions.size() > 1) keep_nearest(step, q, found.positions);
     const std::size_t count = found.positions.size();
@@ -132,7 +133,7 @@ class Search {
   bool loops_close(const Eigen::VectorXd& q) const {
     const auto at = places(flow_.loops.variables, q.data());
     return std::all_of(flow_.loops.loops.begin(), flow_.loops.loops.end(), [&](const Loop& loop) {
-      const Pose round = CutWalk<double>(loop, flow_.loops.variables, at).round();
+      const Pose round = walk<double>(round_way(loop, flow_.loops.variables), at);
       return (round.rotation - Matrix3::Identity()).norm() < spurious &&
              round.position.norm() < spurious * flow_.length;
     });
@@ -144,7 +145,10 @@ class Search {
     work_.q = q;
     const NewtonResult result = newton(work_, state_.time, {});
     plugin_failed_ = result.plugin_failed;
-    if (!result.converged || distance(*work_.mechanism, q, work_.q, work_.delta) > moved_most) return;
+    if (!result.converged || distance(*work_.mechanism, q, work_.q, work_.delta) > moved_most) {
+      uncertain("a position closes nearly, but not to rounding");
+      return;
+    }
     if (!work_.equations.cut_coordinates(work_.q)) {
       plugin_failed_ = true;
       return;
@@ -159,20 +163,25 @@ class Search {
 
   void stop(const std::string& why) {
     stopped_ = true;
+    uncertain_by_.clear();
+    uncertain(why);
+  }
+
+  /// There may be others; the first reason is told.
+  void uncertain(const std::string& why) {
     modes_.complete = false;
-    step_why_ = why;
+    if (uncertain_by_.empty()) uncertain_by_ = why;
   }
 
   void explain() {
-    if (stopped_) {
-      modes_.why = step_why_;
+    if (!modes_.complete) {
+      modes_.why = uncertain_by_;
     } else if (flow_.loops.loops.empty()) {
       modes_.why = "there are no loops to close";
-    } else if (flow_.in_closed_form() && modes_.complete) {
-      modes_.why = "every step of the flow is solved in closed form";
     } else {
-      modes_.why = step_why_;
+      modes_.why = known_by_.empty() ? "every step of the flow is solved in closed form" : known_by_;
     }
+    if (modes_.held > 0) modes_.why += "; what no input determines was taken as it is";
   }
 
   Work& work_;
@@ -185,7 +194,7 @@ class Search {
   bool plugin_failed_ = false, stopped_ = false;
   double part_ = 0.0;
   std::size_t steps_ = 0;
-  std::string step_why_;
+  std::string known_by_, uncertain_by_;
 };
 
 /// The last resort: Newton's method from random starts, ever further away.
@@ -226,9 +235,10 @@ bool find_modes(Work& work, const State& state, const ModeOptions& options, Mode
     modes.why = flow.obstacle;
     return restart(work, state, options, modes);
   }
-  if (!Search(work, state, options, flow, modes).run()) return false;
-  const bool stopped = options.progress && !options.progress(modes.modes.size(), 1.0);
-  return !modes.modes.empty() || modes.complete || stopped || restart(work, state, options, modes);
+  Search search(work, state, options, flow, modes);
+  if (!search.run()) return false;
+  if (!modes.modes.empty() || modes.complete || search.stopped()) return true;
+  return restart(work, state, options, modes);
 }
 
 }  // namespace koppel

@@ -32,46 +32,9 @@ void slide(double d, double rate, double acceleration, MovingPose& at) {
 
 }  // namespace
 
-MovingWalk MovingWalk::lower(const Loop& loop, std::span<const Variable> variables, const LoopCut& cut) {
-  MovingWalk walk;
-  const CutJoint& start = cut.b ? *cut.b : cut.a;
-  const std::size_t n = loop.motions.size(), first = start.first + start.count;
-  const std::size_t count = (cut.a.first + 2 * n - first) % n;
-  Pose constant = start.after.inverse();
-  for (std::size_t i = 0; i < count; ++i) {
-    const LoopMotion& motion = loop.motions[(first + i) % n];
-    const VariableKind kind = variables[motion.variable].kind;
-    walk.legs_.push_back({motion.variable, kind, kind == VariableKind::ball && motion.inverse, constant * motion.to});
-    constant = Pose{};
-  }
-  walk.last_ = constant * cut.a.before;
-  return walk;
-}
-
-MovingWalk MovingWalk::upper(const Loop& loop, std::span<const Variable> variables, const LoopCut& cut) {
-  MovingWalk walk;
-  if (!cut.b) return walk;
-  const std::size_t n = loop.motions.size(), first = cut.a.first + cut.a.count;
-  const std::size_t count = (cut.b->first + 2 * n - first) % n;
-  Pose constant = cut.b->before.inverse();
-  for (std::size_t i = count; i-- > 0;) {
-    const LoopMotion& motion = loop.motions[(first + i) % n];
-    const VariableKind kind = variables[motion.variable].kind;
-    const bool inverse = (kind == VariableKind::ball && motion.inverse) != true;
-    walk.legs_.push_back({motion.variable, kind, inverse, constant});
-    constant = motion.to.inverse();
-  }
-  walk.last_ = constant * cut.a.after;
-  return walk;
-}
-
-bool MovingWalk::passes(std::uint32_t variable) const {
-  return std::any_of(legs_.begin(), legs_.end(), [variable](const Leg& leg) { return leg.variable == variable; });
-}
-
-MovingPose MovingWalk::end(std::span<const MovingPlace> places) const {
+MovingPose moving_end(const Way& way, std::span<const MovingPlace> places) {
   MovingPose at;
-  for (const Leg& leg : legs_) {
+  for (const Leg& leg : way.legs) {
     const MovingPlace& place = places[leg.variable];
     const double sign = leg.inverse ? -1.0 : 1.0;
     carry(leg.to, at);
@@ -91,7 +54,7 @@ MovingPose MovingWalk::end(std::span<const MovingPlace> places) const {
         apply(leg.kind, place.at, leg.inverse, at.pose);
         const Matrix3& axes = leg.inverse ? before : at.pose.rotation;
         const Vector3 rate = sign * (axes * place.rate);
-        Vector3 acceleration = sign * (axes * place.acceleration);
+        const Vector3 acceleration = sign * (axes * place.acceleration);
         // turn() takes the axes as carried along before the ball. Behind it they are carried by it as well, which
         // changes nothing: the rate is its own axis.
         turn(rate, acceleration, at);
@@ -99,14 +62,14 @@ MovingPose MovingWalk::end(std::span<const MovingPlace> places) const {
       }
     }
   }
-  carry(last_, at);
+  carry(way.last, at);
   return at;
 }
 
-MovingWalk::Slope MovingWalk::slope(std::span<const MovingPlace> places, std::uint32_t variable) const {
-  Slope result;
+WaySlope slope(const Way& way, std::span<const MovingPlace> places, std::uint32_t variable) {
+  WaySlope result;
   Vector3 point = Vector3::Zero();
-  for (const Leg& leg : legs_) {
+  for (const Leg& leg : way.legs) {
     result.pose = result.pose * leg.to;
     apply(leg.kind, places[leg.variable].at, leg.inverse, result.pose);
     if (leg.variable != variable) continue;
@@ -118,18 +81,18 @@ MovingWalk::Slope MovingWalk::slope(std::span<const MovingPlace> places, std::ui
       result.linear = axis;
     }
   }
-  result.pose = result.pose * last_;
+  result.pose = result.pose * way.last;
   result.linear += result.angular.cross(result.pose.position - point);
   return result;
 }
 
-double MovingWalk::sensitivity(std::span<const MovingPlace> places, std::span<const double> errors,
-                               std::uint32_t except, const ClosureCondition& condition) const {
+double sensitivity(const Way& way, std::span<const MovingPlace> places, std::span<const double> errors,
+                   std::uint32_t except, const ClosureCondition& condition) {
   // The end is needed for every leg: a second pass after it.
-  const Pose end = slope(places, except).pose;
+  const Pose end = slope(way, places, except).pose;
   double most = 0.0;
   Pose at;
-  for (const Leg& leg : legs_) {
+  for (const Leg& leg : way.legs) {
     at = at * leg.to;
     apply(leg.kind, places[leg.variable].at, leg.inverse, at);
     if (leg.variable == except || errors[leg.variable] == 0.0 || leg.kind == VariableKind::ball) continue;

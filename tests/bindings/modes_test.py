@@ -8,6 +8,9 @@ from scenes import ROOT
 
 import koppel
 
+# How many positions there are, from the sources that the scenes name, or by their geometry.
+COUNTS = {"rstr": 4, "rscr": 2, "rccc": 2, "swash": 4, "4bar": 2, "6r_pose": 8, "3rpr": 6, "7r": 16, "chain": 8, "6r": 1}
+
 
 def load(name):
     return koppel.load(ROOT / "apps" / "scenes" / f"{name}.toml")
@@ -15,7 +18,7 @@ def load(name):
 
 class Modes(unittest.TestCase):
     def test_are_counted_and_close(self):
-        for name, count in (("rstr", 4), ("rscr", 2), ("4bar", 2), ("chain", 8), ("6r", 1)):
+        for name, count in COUNTS.items():
             with self.subTest(scene=name):
                 state = load(name).state()
                 before = state.q

@@ -1,6 +1,7 @@
 // Mechanisms with their work and state, made from shipped scenes or short texts.
 #pragma once
 
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -46,6 +47,11 @@ struct Closed {
   State state{*built.mechanism};
   Report report;
 };
+
+/// Shipped scenes whose flow is in closed form and leaves no choice.
+inline constexpr std::array closed_form_scenes = {"4bar",   "rstr",  "rscr",        "rccc", "swash",   "drive",
+                                                  "sph4",   "chain", "7b10j",       "sar",  "9body",   "bennett",
+                                                  "cardan", "panto", "slidercrank", "3rpr", "6r_pose", "6joint"};
 
 inline bool same_bits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return a.size() == b.size() &&

@@ -74,7 +74,7 @@ Sequence laid_out(const std::vector<Motion>& motions, Random& random) {
 }
 
 /// The frame that the last motion has moved, in the one before the run, at random coordinates; and the screws.
-Pose moved_at_random(const Sequence& run, Random& random, std::vector<WalkColumn<double>>* screws = nullptr) {
+Pose moved_at_random(const Sequence& run, Random& random, std::vector<WayColumn<double>>* screws = nullptr) {
   Pose frame;
   for (std::size_t i = 0; i < run.count; ++i) {
     const LoopMotion& motion = run.loop.motions[(run.first + i) % run.loop.motions.size()];
@@ -102,7 +102,7 @@ Pose moved_at_random(const Sequence& run, Random& random, std::vector<WalkColumn
 }
 
 /// How many of the motions are independent where they are.
-int rank(const std::vector<WalkColumn<double>>& screws) {
+int rank(const std::vector<WayColumn<double>>& screws) {
   Eigen::MatrixXd columns(6, static_cast<Eigen::Index>(screws.size()));
   for (std::size_t i = 0; i < screws.size(); ++i) {
     columns.col(static_cast<Eigen::Index>(i)) << screws[i].angular,
@@ -153,7 +153,7 @@ void expect_joint(const Sequence& run, const std::optional<CutShape>& shape, Ran
   EXPECT_EQ(joint->first, run.first);
   EXPECT_EQ(joint->count, run.count);
   for (int i = 0; i < 5; ++i) {
-    std::vector<WalkColumn<double>> screws;
+    std::vector<WayColumn<double>> screws;
     const Pose moved = moved_at_random(run, random, &screws);
     EXPECT_EQ(joint->freedoms, rank(screws)) << "freedoms";
     expect_same_elements(joint->shape, joint->before, moved * joint->after);

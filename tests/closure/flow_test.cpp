@@ -324,12 +324,9 @@ TEST_P(FlowOfAScene, HasConditionsInNothingElse) {
     }
     for (const FlowRow& row : step.rows) {
       const LoopCut& cut = flow.cuts[row.cut];
-      const CutWalk<double> walk(flow.loops.loops[cut.loop], flow.loops.variables, at);
-      const auto open = [&] {
-        const ClosureCondition& condition = cut.conditions[row.condition];
-        return (value(condition, walk.lower(cut)) - value(condition, walk.upper(cut))) /
-               size_of(condition, flow.length);
-      };
+      const Loop& loop = flow.loops.loops[cut.loop];
+      const Way lower = lower_way(loop, flow.loops.variables, cut), upper = upper_way(loop, flow.loops.variables, cut);
+      const auto open = [&] { return openness(cut.conditions[row.condition], lower, upper, at, flow.length); };
       const double before = open(), allowed = 20 * 2 * 6 * eps * 100;
       int changed = 0;
       for (std::uint32_t v = 0; v < at.size(); ++v) {

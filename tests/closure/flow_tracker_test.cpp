@@ -47,10 +47,7 @@ struct Tracked : Closed {
 
 class ClosedFormScene : public testing::TestWithParam<const char*> {};
 
-INSTANTIATE_TEST_SUITE_P(FlowTracker, ClosedFormScene,
-                         testing::Values("4bar", "rstr", "rscr", "rccc", "swash", "drive", "sph4", "chain", "7b10j",
-                                         "sar", "9body", "bennett", "cardan", "panto", "slidercrank", "3rpr", "6r_pose",
-                                         "6joint"),
+INSTANTIATE_TEST_SUITE_P(FlowTracker, ClosedFormScene, testing::ValuesIn(closed_form_scenes),
                          [](const auto& test) { return std::string("scene_") + test.param; });
 
 /// Both are off by rounding times their condition numbers; rates by that once more for each differentiation.

@@ -42,7 +42,7 @@ double reach(const Mechanism& mechanism, const Loop& loop, const Eigen::VectorXd
 
 Pose round(const Loops& loops, const Loop& loop, const Eigen::VectorXd& q) {
   const auto at = places(loops.variables, q.data());
-  return CutWalk<double>(loop, loops.variables, at).round();
+  return walk<double>(round_way(loop, loops.variables), at);
 }
 
 /// Every loop closes at q; `open`: what the coordinates themselves leave open, in radians.
@@ -258,10 +258,10 @@ TEST(Loop, HasTheScrewsOfItsMotionsAsDerivative) {
     const Loop& loop = loops.loops[0];
     const Eigen::VectorXd q = random_position(*built, random, 1.5);
     const auto at = places(loops.variables, q.data());
-    std::vector<WalkColumn<double>> columns;
-    const Pose end = CutWalk<double>(loop, loops.variables, at).round(&columns);
+    std::vector<WayColumn<double>> columns;
+    const Pose end = walk<double>(round_way(loop, loops.variables), at, &columns);
     ASSERT_EQ(columns.size(), built->nv);
-    for (const WalkColumn<double>& column : columns) {
+    for (const WayColumn<double>& column : columns) {
       std::vector<Place<Complex>> moved(at.size());
       for (std::size_t i = 0; i < at.size(); ++i) std::copy(at[i].begin(), at[i].end(), moved[i].begin());
       Place<Complex>& place = moved[column.variable];
@@ -278,8 +278,8 @@ TEST(Loop, HasTheScrewsOfItsMotionsAsDerivative) {
           break;
         }
       }
-      const PoseT<Complex> shifted = CutWalk<Complex>(loop, loops.variables, moved).round();
-      const Vector3 linear = column.along + column.angular.cross(end.position - column.point);
+      const PoseT<Complex> shifted = walk<Complex>(round_way(loop, loops.variables), moved);
+      const Vector3 linear = column.velocity(end.position);
       const double allowed = 2 * static_cast<double>(loop.motions.size() + 2) * of_motion;
       EXPECT_LE((shifted.rotation.imag() / h - skew(column.angular) * end.rotation).norm(), allowed);
       EXPECT_LE((shifted.position.imag() / h - linear).norm(), allowed * (1.0 + 2 * reach(*built, loop, q)));

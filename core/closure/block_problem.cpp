@@ -160,6 +160,7 @@ void BlockProblem::conditions(const ComplexVector& p, ComplexVector& residual, C
         }
       }
       residual[row] += sign * value(condition, a_in_b);
+      if (jacobian == nullptr) continue;
       for (const WayColumn<Complex>& column : columns_) {
         const std::int32_t unknown = unknown_of_[column.variable];
         if (unknown < 0) continue;

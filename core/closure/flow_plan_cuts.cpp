@@ -252,6 +252,7 @@ int FlowPlan::conditions_of(std::uint32_t index) {
   std::vector<WayColumn<double>> walked;
   walk<double>(round_way(flow_.loops.loops[index], flow_.loops.variables), at, &walked);
   std::vector<Column> columns;
+  columns.reserve(walked.size());
   for (const WayColumn<double>& column : walked) columns.push_back({column.angular, column.along, column.point});
   return loop_kind(columns, flow_.length).conditions;
 }

@@ -110,9 +110,12 @@ class Search {
     const double share = width / static_cast<double>(std::max<std::size_t>(count, 1));
     double done = from;
     for (const std::size_t i : order) {
-      const std::string choice = count > 1 || could_be_several(step) ? std::to_string(i + 1) : "";
-      const std::string separator = id.empty() || choice.empty() ? "" : ".";
-      descend(number + 1, found.positions[i], id + separator + choice, done, share);
+      std::string longer = id;
+      if (count > 1 || could_be_several(step)) {
+        if (!id.empty()) longer += '.';
+        longer += std::to_string(i + 1);
+      }
+      descend(number + 1, found.positions[i], longer, done, share);
       done += share;
     }
   }

@@ -85,7 +85,8 @@ PathLimit Endgame::follow(const ComplexVector& start, const StepBounds& bounds) 
 PathLimit Endgame::approach(const StepBounds& bounds) {
   PathLimit limit;
   limit.point = x_;
-  for (double radius = first_radius; radius > last_radius; radius *= shrink) {
+  double radius = first_radius / shrink;
+  while ((radius *= shrink) > last_radius) {
     const Loop loop = go_round(radius, bounds, limit);
     if (loop == Loop::diverging) {
       limit.end = PathEnd::diverging;

@@ -81,7 +81,7 @@ std::optional<Vector3> crossing(const Run& run, std::size_t i, std::size_t j, do
 
 /// Turns whose axes all pass through one point; neighbours not parallel.
 std::optional<Vector3> common_point(const Run& run, double length) {
-  const auto point = crossing(run, 0, 1, length);
+  auto point = crossing(run, 0, 1, length);
   if (!point || run.count == 2) return point;
   if (parallel(run, run.axes[1], run.axes[2])) return std::nullopt;
   if (!nothing(run.axes[2].cross(*point - run.points[2]).norm() / length, run.doubtful)) return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <iterator>
 #include <new>
 
 #include "koppel/plugin.h"
@@ -42,6 +43,14 @@ constexpr koppel_parameter counted(koppel_parameter p, uint32_t count_min, uint3
 
 constexpr koppel_parameter not_negative(koppel_parameter p) {
   p.minimum = zeros;
+  return p;
+}
+
+/// A table of pairs, at least two where it is given; without it there is none.
+constexpr koppel_parameter pairs(const char* name, const char* unit, const char* doc) {
+  koppel_parameter p = optional(KOPPEL_PARAMETER_TABLE, name, unit, doc, nullptr);
+  p.columns = 2;
+  p.count_min = 2;  // count_max 0: as many rows as there are
   return p;
 }
 
@@ -166,12 +175,102 @@ constexpr koppel_function_type function(const koppel_type& type) {
   return {sizeof(koppel_function_type), &type, evaluate_all<T>};
 }
 
+// ---------------------------------------------------------------------------------------------- forces
+
+constexpr koppel_internal_state internal_state(const char* name, const char* unit) {
+  return {sizeof(koppel_internal_state), name, unit};
+}
+
+/// Where one instance of a force stands; pose and twist, or q and v, are null where it has no such subject.
+struct Standing {
+  double time;
+  const double *pose, *twist, *q, *v;
+  const double* states;
+};
+
+template <typename T>
+Standing standing(const koppel_configuration& at, const double* states, std::size_t i) {
+  const auto item = [i](const double* first, std::size_t size) {
+    return first == nullptr ? nullptr : first + size * i;
+  };
+  std::size_t state_count = 0;
+  if constexpr (requires { T::states; }) state_count = std::size(T::states);
+  return {at.time,
+          item(at.pose, 12),
+          item(at.twist, 6),
+          item(at.q, at.coordinates),
+          item(at.v, at.coordinates),
+          item(states, state_count)};
+}
+
+/// What one instance answers: [moment; force] on the second frame, efforts on coordinates, rates of internal states.
+struct Action {
+  double *wrench, *effort, *state_rates;
+};
+
+template <typename T>
+koppel_status evaluate_forces(size_t count, const void* const* instances, const koppel_configuration* at,
+                              const double* states, double* wrench, double* effort, double* state_rates) {
+  for (std::size_t i = 0; i < count; ++i) {
+    as<T>(instances[i]).evaluate(standing<T>(*at, states, i), Action{wrench, effort, state_rates});
+    if (wrench != nullptr) wrench += 6;
+    if (effort != nullptr) effort += at->coordinates;
+    if constexpr (requires { T::states; }) state_rates += std::size(T::states);
+  }
+  return KOPPEL_OK;
+}
+
+template <typename T>
+koppel_status energies(size_t count, const void* const* instances, const koppel_configuration* at, const double* states,
+                       double* out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = as<T>(instances[i]).energy(standing<T>(*at, states, i));
+  return KOPPEL_OK;
+}
+
+template <typename T>
+koppel_status dissipations(size_t count, const void* const* instances, const koppel_configuration* at,
+                           const double* states, double* out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = as<T>(instances[i]).dissipation(standing<T>(*at, states, i));
+  return KOPPEL_OK;
+}
+
+template <typename T>
+koppel_status switches_of(size_t count, const void* const* instances, const koppel_configuration* at,
+                          const double* states, double* out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    as<T>(instances[i]).switches(standing<T>(*at, states, i), out + T::switch_count * i);
+  }
+  return KOPPEL_OK;
+}
+
+/// The table of a force whose instances are a T. T::evaluate(Standing, Action) it must have; T::states, T::energy and
+/// T::dissipation (Standing to number), T::switch_count and T::switches(Standing, numbers) it may have.
+template <typename T>
+constexpr koppel_force_type force(const koppel_type& type) {
+  koppel_force_type out{};
+  out.struct_size = sizeof(koppel_force_type);
+  out.type = &type;
+  out.evaluate = evaluate_forces<T>;
+  if constexpr (requires { T::states; }) {
+    out.states = T::states;
+    out.state_count = std::size(T::states);
+  }
+  if constexpr (requires { &T::energy; }) out.energy = energies<T>;
+  if constexpr (requires { &T::dissipation; }) out.dissipation = dissipations<T>;
+  if constexpr (requires { &T::switches; }) {
+    out.switch_count = T::switch_count;
+    out.switches = switches_of<T>;
+  }
+  return out;
+}
+
 // ---------------------------------------------------------------------------------------------- entry
 
 constexpr const char* interface_of(const koppel_joint_type&) { return KOPPEL_JOINT_INTERFACE; }
 constexpr const char* interface_of(const koppel_body_type&) { return KOPPEL_BODY_INTERFACE; }
 constexpr const char* interface_of(const koppel_constraint_type&) { return KOPPEL_CONSTRAINT_INTERFACE; }
 constexpr const char* interface_of(const koppel_function_type&) { return KOPPEL_FUNCTION_INTERFACE; }
+constexpr const char* interface_of(const koppel_force_type&) { return KOPPEL_FORCE_INTERFACE; }
 
 template <const auto& table>
 const void* only_table(const char* interface_id, size_t index) {

@@ -19,6 +19,7 @@ class Compiler {
     KOPPEL_CHECK(build_joints());
     KOPPEL_CHECK(build_inputs());
     KOPPEL_CHECK(build_constraints());
+    KOPPEL_CHECK(build_forces());
     take_length();
     build_tree();
     number_columns();
@@ -38,6 +39,7 @@ class Compiler {
     m().gravity = scene_.gravity;
     m().duration = scene_.duration;
     m().run_steps = scene_.steps;
+    m().simulation = scene_.simulation;
     m().hash = scene_.hash;
     m().frames = scene_.frames;
     m().records = scene_.records;
@@ -99,6 +101,38 @@ class Compiler {
       m().constraints.push_back(std::move(constraint));
     }
     return {};
+  }
+
+  Result<void> build_forces() {
+    for (const ForceDescription& description : scene_.forces) {
+      auto instance = description.type->create(description.values);
+      if (!instance) return refused(std::move(instance).error(), description.source, "force " + description.name);
+      Force force;
+      force.name = description.name;
+      force.type = description.type;
+      force.instance = std::move(*instance);
+      place(force, description.frames);
+      for (const CoordinateReference& of : description.coordinates) {
+        const JointBlock& block = claim(of);
+        force.q.push_back(m().joints[of.joint.index()].q + block.q);
+        force.v.push_back(m().joints[of.joint.index()].v + block.v);
+      }
+      force.first_state = m().internal_states;
+      m().internal_states += static_cast<std::uint32_t>(force.type->states.size());
+      m().forces.push_back(std::move(force));
+    }
+    return {};
+  }
+
+  /// A body's node is its first half, wherever it may be cut.
+  static void place(Force& force, const std::vector<Attachment>& frames) {
+    force.has_frames = !frames.empty();
+    if (frames.empty()) return;
+    force.node_b = frames.back().body.value;
+    force.pose_b = frames.back().pose;
+    if (frames.size() < 2) return;
+    force.node_a = frames.front().body.value;
+    force.pose_a = frames.front().pose;
   }
 
   static Result<void> refused(Error error, const Source& source, std::string element) {

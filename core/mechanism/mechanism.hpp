@@ -64,6 +64,18 @@ struct Constraint {
   std::vector<std::uint32_t> q, v;  ///< where its coordinates are in the state
 };
 
+/// A force with its plugin instance. With one frame, that is b, and a is the world.
+struct Force {
+  std::string name;
+  const ForceType* type = nullptr;
+  Instance instance;
+  bool has_frames = false;
+  Node node_a = 0, node_b = 0;
+  Pose pose_a, pose_b;              ///< the frames in their nodes
+  std::vector<std::uint32_t> q, v;  ///< where its coordinates are in the state
+  std::uint32_t first_state = 0;    ///< of its internal states among those of all forces
+};
+
 /// A driven coordinate with its function of time.
 struct Input {
   std::string name;
@@ -107,6 +119,7 @@ class Mechanism {
   double length = 1.0;  ///< characteristic length [m]
   double duration = 1.0;
   std::uint32_t run_steps = 100;
+  SimulationDescription simulation;
   std::uint64_t hash = 0;
 
   std::vector<Body> bodies;
@@ -114,6 +127,8 @@ class Mechanism {
   std::vector<Joint> joints;
   std::vector<Constraint> constraints;
   std::vector<Input> inputs;
+  std::vector<Force> forces;
+  std::uint32_t internal_states = 0;  ///< of all forces
   std::vector<RecordDescription> records;
   std::vector<RecordColumn> record_columns;
 

@@ -33,8 +33,10 @@ State::State(const Mechanism& mechanism)
     neutral_block(block.kind, q.data() + block.q);
     if (is_scalar(block.kind)) q[block.q] = about.zero;
     if (about.start) std::copy(about.start->begin(), about.start->end(), q.data() + block.q);
+    if (about.start_rate) std::copy(about.start_rate->begin(), about.start_rate->end(), v.data() + block.v);
   }
   for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    v[mechanism.inputs[i].v] = 0.0;
     input[static_cast<Eigen::Index>(i)] = q[mechanism.inputs[i].q];
   }
   history.acceleration.setZero(mechanism.nv);

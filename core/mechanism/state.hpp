@@ -14,6 +14,7 @@ namespace koppel {
 enum class Stage { assigned, closed, velocities, accelerations };
 
 struct State {
+  /// Where the scene lets it start: positions, and rates of what no drive sets.
   explicit State(const Mechanism& mechanism);
 
   Eigen::VectorXd q;  ///< nq: all joints in file order, angles not wrapped

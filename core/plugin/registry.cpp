@@ -23,6 +23,8 @@ template <>
 constexpr PluginKind kind_of<ConstraintType> = PluginKind::constraint;
 template <>
 constexpr PluginKind kind_of<FunctionType> = PluginKind::function;
+template <>
+constexpr PluginKind kind_of<ForceType> = PluginKind::force;
 
 std::string ticked(std::string_view name) { return '`' + std::string(name) + '`'; }
 
@@ -260,6 +262,9 @@ Result<const ConstraintType*> Registry::constraint(std::string_view name, const 
 }
 Result<const FunctionType*> Registry::function(std::string_view name, const PluginReference& from) {
   return impl_->find<FunctionType>(name, from, *this);
+}
+Result<const ForceType*> Registry::force(std::string_view name, const PluginReference& from) {
+  return impl_->find<ForceType>(name, from, *this);
 }
 
 Result<void> Registry::add(const koppel_plugin_entry& entry) {

@@ -47,6 +47,7 @@ class Registry {
   Result<const BodyType*> body(std::string_view name, const PluginReference& from);
   Result<const ConstraintType*> constraint(std::string_view name, const PluginReference& from);
   Result<const FunctionType*> function(std::string_view name, const PluginReference& from);
+  Result<const ForceType*> force(std::string_view name, const PluginReference& from);
 
   /// Takes in all types of an entry that the host has linked in.
   Result<void> add(const koppel_plugin_entry& entry);

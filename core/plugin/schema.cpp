@@ -78,8 +78,8 @@ Result<void> read_counts(const Subject& subject, const koppel_parameter& from, P
     parameter.count_max = std::numeric_limits<std::size_t>::max();
   }
   const bool acts_on = parameter.kind == ParameterKind::frame || parameter.kind == ParameterKind::coordinates;
-  if (acts_on && kind != PluginKind::constraint) {
-    return subject.malformed(what + ": frames and coordinates are for constraints only");
+  if (acts_on && kind != PluginKind::constraint && kind != PluginKind::force) {
+    return subject.malformed(what + ": frames and coordinates are for constraints and forces only");
   }
   if (parameter.kind == ParameterKind::direction && kind != PluginKind::joint) {
     return subject.malformed(what + ": directions are for joints only", "use a vector");
@@ -154,6 +154,20 @@ Result<std::vector<Row>> read_rows(const Subject& subject, const koppel_row* fir
     if (from.unit == nullptr) return subject.malformed("row `" + row.name + "`: unit is NULL");
     row.unit = from.unit;
     out.push_back(std::move(row));
+  }
+  return out;
+}
+
+Result<std::vector<InternalState>> read_states(const Subject& subject, const koppel_internal_state* first,
+                                               std::size_t count) {
+  KOPPEL_TRY(const auto table, read_array(subject, first, count, size_through(&koppel_internal_state::unit), "state"));
+  std::vector<InternalState> out;
+  for (const koppel_internal_state& from : table) {
+    InternalState state;
+    KOPPEL_TRY(state.name, read_name(subject, from.name, out, "state " + std::to_string(out.size())));
+    if (from.unit == nullptr) return subject.malformed("state `" + state.name + "`: unit is NULL");
+    state.unit = from.unit;
+    out.push_back(std::move(state));
   }
   return out;
 }

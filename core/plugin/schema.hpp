@@ -1,4 +1,4 @@
-// Reads the parts that tables are made of: names, parameter schemas, coordinates, rows.
+// Reads the parts that tables are made of: names, parameter schemas, coordinates, rows, internal states.
 #pragma once
 
 #include <string>
@@ -59,5 +59,7 @@ bool is_identifier(std::string_view name);
 Result<std::vector<Parameter>> read_parameters(const Subject& subject, const koppel_type& type, PluginKind kind);
 Result<std::vector<Block>> read_blocks(const Subject& subject, const koppel_coordinate* first, std::size_t count);
 Result<std::vector<Row>> read_rows(const Subject& subject, const koppel_row* first, std::size_t count);
+Result<std::vector<InternalState>> read_states(const Subject& subject, const koppel_internal_state* first,
+                                               std::size_t count);
 
 }  // namespace koppel

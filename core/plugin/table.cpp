@@ -107,6 +107,21 @@ Result<AnyType> read_body(const Reader& reader, Subject& subject, const void* ta
   return AnyType(std::move(out));
 }
 
+std::ptrdiff_t parameters_of(const Type& type, ParameterKind kind) {
+  return std::count_if(type.parameters.begin(), type.parameters.end(),
+                       [kind](const Parameter& p) { return p.kind == kind; });
+}
+
+/// What constraints and forces act on: frames, coordinates or both. The least number of frames that a scene gives.
+Result<std::ptrdiff_t> check_subjects(const Subject& subject, const Type& type) {
+  const auto frames = parameters_of(type, ParameterKind::frame);
+  const auto coordinates = parameters_of(type, ParameterKind::coordinates);
+  if (coordinates > 1) return subject.malformed("has more than one parameter of kind COORDINATES");
+  if (frames + coordinates == 0) return subject.malformed("has no parameter of kind FRAME or COORDINATES to act on");
+  return std::count_if(type.parameters.begin(), type.parameters.end(),
+                       [](const Parameter& p) { return p.kind == ParameterKind::frame && p.required; });
+}
+
 Result<AnyType> read_constraint(const Reader& reader, Subject& subject, const void* table) {
   ConstraintType out;
   KOPPEL_TRY(out.calls, read_struct(subject, static_cast<const koppel_constraint_type*>(table),
@@ -115,17 +130,14 @@ Result<AnyType> read_constraint(const Reader& reader, Subject& subject, const vo
   if (out.calls.residual == nullptr) return subject.malformed("residual is NULL");
   if (out.calls.jacobian == nullptr) return subject.malformed("jacobian is NULL");
   if (out.calls.second_order == nullptr) return subject.malformed("second_order is NULL");
-  const auto parameters_of = [&out](ParameterKind kind) {
-    return std::count_if(out.parameters.begin(), out.parameters.end(),
-                         [kind](const Parameter& p) { return p.kind == kind; });
-  };
-  const auto frames = parameters_of(ParameterKind::frame);
-  const auto coordinates = parameters_of(ParameterKind::coordinates);
+  const auto frames = parameters_of(out, ParameterKind::frame);
   if (frames != 0 && frames != 2) {
     return subject.malformed("has " + std::to_string(frames) + " parameters of kind FRAME; it may have none or two");
   }
-  if (coordinates > 1) return subject.malformed("has more than one parameter of kind COORDINATES");
-  if (frames + coordinates == 0) return subject.malformed("has no parameter of kind FRAME or COORDINATES to act on");
+  KOPPEL_TRY(const auto required_frames, check_subjects(subject, out));
+  if (required_frames != frames) {
+    return subject.malformed("has a parameter of kind FRAME that is not required; a constraint needs both frames");
+  }
   if (out.calls.row_count == 0) return subject.malformed("row_count is 0");
   KOPPEL_TRY(out.rows, read_rows(subject, out.calls.rows, out.calls.row_count));
   return AnyType(std::move(out));
@@ -140,6 +152,44 @@ Result<AnyType> read_function(const Reader& reader, Subject& subject, const void
   return AnyType(std::move(out));
 }
 
+Result<void> check_calls(const Subject& subject, const koppel_force_type& calls) {
+  if (calls.evaluate == nullptr) return subject.malformed("evaluate is NULL");
+  if (calls.initial != nullptr && calls.state_count == 0) {
+    return subject.malformed("initial is given, but state_count is 0");
+  }
+  if (calls.dissipation != nullptr && calls.energy == nullptr) {
+    return subject.malformed("dissipation is given, but energy is NULL",
+                             "a force that only loses energy gives an energy that is always 0");
+  }
+  if ((calls.switches != nullptr) != (calls.switch_count != 0)) {
+    return subject.malformed(calls.switches == nullptr ? "has a switch_count, but switches is NULL"
+                                                       : "switches is given, but switch_count is 0");
+  }
+  constexpr std::size_t implausible = 256;
+  if (calls.switch_count > implausible) {
+    return subject.malformed("has " + std::to_string(calls.switch_count) + " switches");
+  }
+  return {};
+}
+
+Result<AnyType> read_force(const Reader& reader, Subject& subject, const void* table) {
+  ForceType out;
+  KOPPEL_TRY(out.calls, read_struct(subject, static_cast<const koppel_force_type*>(table),
+                                    size_through(&koppel_force_type::switches), "koppel_force_type"));
+  KOPPEL_CHECK(read_common(reader, subject, PluginKind::force, out.calls.type, out));
+  KOPPEL_CHECK(check_calls(subject, out.calls));
+  const auto frames = parameters_of(out, ParameterKind::frame);
+  if (frames > 2) {
+    return subject.malformed("has " + std::to_string(frames) + " parameters of kind FRAME; it may have two at most");
+  }
+  KOPPEL_TRY(const auto required_frames, check_subjects(subject, out));
+  if (frames > 0 && required_frames == 0) {
+    return subject.malformed("none of its parameters of kind FRAME is required", "require the one that it acts on");
+  }
+  KOPPEL_TRY(out.states, read_states(subject, out.calls.states, out.calls.state_count));
+  return AnyType(std::move(out));
+}
+
 struct Interface {
   const char* id;
   const char* table;
@@ -151,6 +201,7 @@ constexpr Interface interfaces[] = {
     {KOPPEL_BODY_INTERFACE, "body table", read_body},
     {KOPPEL_CONSTRAINT_INTERFACE, "constraint table", read_constraint},
     {KOPPEL_FUNCTION_INTERFACE, "function table", read_function},
+    {KOPPEL_FORCE_INTERFACE, "force table", read_force},
 };
 
 }  // namespace

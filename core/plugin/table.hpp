@@ -12,7 +12,7 @@
 
 namespace koppel {
 
-using AnyType = std::variant<JointType, BodyType, ConstraintType, FunctionType>;
+using AnyType = std::variant<JointType, BodyType, ConstraintType, FunctionType, ForceType>;
 
 /// Where a plugin comes from decides which names it may give to its types.
 enum class Naming {

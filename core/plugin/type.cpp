@@ -12,6 +12,7 @@ std::string_view plugin_kind_name(PluginKind kind) {
     case PluginKind::body: return "body";
     case PluginKind::constraint: return "constraint";
     case PluginKind::function: return "function";
+    case PluginKind::force: return "force";
   }
   return "type";
 }

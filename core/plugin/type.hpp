@@ -16,7 +16,7 @@
 
 namespace koppel {
 
-enum class PluginKind { joint, body, constraint, function };
+enum class PluginKind { joint, body, constraint, function, force };
 
 /// "joint", "body", ... as written in scenes.
 std::string_view plugin_kind_name(PluginKind kind);
@@ -149,6 +149,16 @@ struct ConstraintType : Type {
 
 struct FunctionType : Type {
   koppel_function_type calls{};
+};
+
+struct InternalState {
+  std::string name;
+  std::string unit;
+};
+
+struct ForceType : Type {
+  std::vector<InternalState> states;
+  koppel_force_type calls{};
 };
 
 }  // namespace koppel

@@ -1,4 +1,4 @@
-// [[constraint]] and [[drive]].
+// [[constraint]], [[force]] and [[drive]].
 #include "scene/coordinate_reader.hpp"
 #include "scene/type_values.hpp"
 
@@ -16,15 +16,32 @@ void check_driven(Reading& reading, const Element& element, const TableReader& t
                          "remove one of the two; the other is in line " + std::to_string(other.source.line));
     return;
   }
-  const Place& start = reading.starts[coordinate.joint.index()][coordinate.block];
-  if (start.line == 0) return;
+  const Reading::StartPlaces& start = reading.starts[coordinate.joint.index()][coordinate.block];
   // The joint may stand in another file than the drive.
   for (const Element& joint : reading.joints) {
     if (joint.index != coordinate.joint.index()) continue;
-    reading.reporter(*joint.scope, joint.label)
-        .warning(Code::start_ignored, start, "the start value is ignored: a drive sets this coordinate",
-                 "remove it, or the drive of " + quote(of.text));
+    const Reporter report = reading.reporter(*joint.scope, joint.label);
+    const auto ignored = [&](const Place& place, const std::string& what) {
+      if (place.line == 0) return;
+      report.warning(Code::start_ignored, place, "the " + what + " is ignored: a drive sets this coordinate",
+                     "remove it, or the drive of " + quote(of.text));
+    };
+    ignored(start.value, "start value");
+    ignored(start.rate, "start rate");
   }
+}
+
+/// The unit of the coordinate that a standard force acts on: values without a unit in its schema are measured in it.
+std::string_view coordinate_unit(Reading& reading, Scope& scope, TableReader& table, const ForceType& type) {
+  if (type.name.find('.') != std::string::npos) return "";
+  for (const Parameter& parameter : type.parameters) {
+    const Node* node = parameter.kind == ParameterKind::coordinates ? table.find(parameter.name) : nullptr;
+    if (node == nullptr || !node->is_string()) continue;
+    // A fault is told once more when the values are read, and then counts once.
+    const auto of = read_scalar_coordinate(reading, scope, table.values(), *node, quote(parameter.name));
+    if (of) return unit_of(reading.scene.joints[of->joint.index()].type->blocks[of->block].kind);
+  }
+  return "";
 }
 
 /// What the values of a function are measured in where its schema does not say: standard functions have the unit of the
@@ -49,6 +66,21 @@ void read_constraint(Reading& reading, const Element& element) {
   constraint.values = std::move(given.values);
   constraint.frames = std::move(given.frames);
   constraint.coordinates = std::move(given.coordinates);
+  table.finish();
+}
+
+void read_force(Reading& reading, const Element& element) {
+  Scope& scope = *element.scope;
+  TableReader table = reading.table(element);
+  table.find("name");
+  ForceDescription& force = reading.scene.forces[element.index];
+  force.type = find_type<ForceType>(reading, scope, table, "", &Registry::force);
+  if (force.type == nullptr) return table.finish_without_type();
+  const std::string_view unit = coordinate_unit(reading, scope, table, *force.type);
+  TypeValues given = read_values(reading, scope, table, *force.type, Matrix3::Identity(), unit);
+  force.values = std::move(given.values);
+  force.frames = std::move(given.frames);
+  force.coordinates = std::move(given.coordinates);
   table.finish();
 }
 

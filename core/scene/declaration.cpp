@@ -95,6 +95,10 @@ void declare_elements(Reading& reading, Scope& scope) {
     append(scene.constraints, element).source = std::move(source);
     return reading.constraint_names.insert(element.name).second;
   });
+  declare(reading, scope, {"force", true, reading.forces}, [&](Element& element, Source source) {
+    append(scene.forces, element).source = std::move(source);
+    return reading.force_names.insert(element.name).second;
+  });
   declare(reading, scope, {"drive", false, reading.drives}, [&](Element& element, Source source) {
     append(scene.drives, element).source = std::move(source);
     return reading.drive_names.insert(element.name).second;

@@ -55,6 +55,8 @@ class Stream {
     if (coordinate.limits) {
       for (const double limit : *coordinate.limits) add(limit);
     }
+    add(coordinate.start_rate.has_value());
+    if (coordinate.start_rate) add(*coordinate.start_rate);
   }
   template <typename Item>
   void add(const std::vector<Item>& items) {
@@ -88,6 +90,19 @@ class Stream {
     add(constraint.frames);
     add(constraint.coordinates);
   }
+  void add(const ForceDescription& force) {
+    add(force.name);
+    add(force.type);
+    add(force.values);
+    add(force.frames);
+    add(force.coordinates);
+  }
+  void add(const SimulationDescription& simulation) {
+    for (const auto& number : {simulation.tolerance, simulation.step}) {
+      add(number.has_value());
+      add(number.value_or(0.0));
+    }
+  }
   void add(const DriveDescription& drive) {
     add(drive.name);
     add(drive.of);
@@ -120,10 +135,12 @@ std::uint64_t scene_hash(const Scene& scene) {
   stream.add(scene.length.value_or(0.0));
   stream.add(scene.duration);
   stream.add(std::uint64_t{scene.steps});
+  stream.add(scene.simulation);
   stream.add(scene.bodies);
   stream.add(scene.frames);
   stream.add(scene.joints);
   stream.add(scene.constraints);
+  stream.add(scene.forces);
   stream.add(scene.drives);
   stream.add(scene.records);
   return stream.hash();

@@ -29,17 +29,13 @@ bool check_schema(const Scope& scope, const Reporter& report) {
 }
 
 void check_tables(const Node& root, const Reporter& report) {
-  const std::vector<std::string> tables = {"schema", "scene",      "parameters", "body",   "frame",
-                                           "joint",  "constraint", "drive",      "record", "include"};
+  const std::vector<std::string> tables = {"schema", "scene",      "parameters", "simulation", "body",   "frame",
+                                           "joint",  "constraint", "force",      "drive",      "record", "include"};
   for (const Node::Key& key : root.keys) {
-    if (key.text == "force") {
-      report.error(Code::reserved_table, key.place, "[[force]] is reserved: this version has no forces yet",
-                   "remove the table");
-    } else if (std::find(tables.begin(), tables.end(), key.text) == tables.end()) {
-      std::string advice = did_you_mean(key.text, tables);
-      if (advice.empty()) advice = "values of your own go into [parameters]";
-      report.error(Code::unknown_table, key.place, quote(key.text) + " is no part of a scene", std::move(advice));
-    }
+    if (std::find(tables.begin(), tables.end(), key.text) != tables.end()) continue;
+    std::string advice = did_you_mean(key.text, tables);
+    if (advice.empty()) advice = "values of your own go into [parameters]";
+    report.error(Code::unknown_table, key.place, quote(key.text) + " is no part of a scene", std::move(advice));
   }
 }
 

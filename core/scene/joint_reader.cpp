@@ -76,6 +76,20 @@ std::optional<std::vector<double>> read_start(const ValueReader& values, const B
   return std::nullopt;
 }
 
+/// One number for each rate of the block, per second: of a quaternion the angular velocity in outlet axes.
+std::optional<std::vector<double>> read_start_rate(const ValueReader& values, const Block& block, const Node& node) {
+  const std::string what = "`start_rate." + block.name + '`';
+  if (!is_scalar(block.kind)) {
+    const std::size_t count = rate_count(block.kind);
+    const std::string_view advice = block.kind == BlockKind::quaternion
+                                        ? "write the angular velocity in the axes of the outlet: [wx, wy, wz]"
+                                        : "write one number for each rate";
+    return values.numbers(node, what, count, count, "rad", advice);
+  }
+  const auto rate = values.number(node, what, unit_of(block.kind));
+  return rate ? std::optional(std::vector<double>{*rate}) : std::nullopt;
+}
+
 std::optional<std::array<double, 2>> read_limits(const ValueReader& values, const Block& block, const Node& node) {
   const auto limits = values.numbers(node, "`limits." + block.name + '`', 2, 2, unit_of(block.kind));
   if (!limits) return std::nullopt;
@@ -87,7 +101,8 @@ std::optional<std::array<double, 2>> read_limits(const ValueReader& values, cons
   return std::array<double, 2>{(*limits)[0], (*limits)[1]};
 }
 
-/// The table `zero`, `start` or `limits` of a joint: calls read(block number, node) for each coordinate in it.
+/// The table `zero`, `start`, `start_rate` or `limits` of a joint: calls read(block number, node) for each coordinate
+/// in it.
 template <typename Read>
 void read_by_coordinate(TableReader& table, const JointType& type, std::string_view key, Read read) {
   const Node* node = table.find(key);
@@ -125,7 +140,11 @@ void read_coordinate_settings(Reading& reading, const Element& element, TableRea
   });
   read_by_coordinate(table, type, "start", [&](std::size_t block, const Node& node) {
     joint.coordinates[block].start = read_start(values, type.blocks[block], node);
-    reading.starts[element.index][block] = node.place;
+    reading.starts[element.index][block].value = node.place;
+  });
+  read_by_coordinate(table, type, "start_rate", [&](std::size_t block, const Node& node) {
+    joint.coordinates[block].start_rate = read_start_rate(values, type.blocks[block], node);
+    reading.starts[element.index][block].rate = node.place;
   });
   read_by_coordinate(table, type, "limits", [&](std::size_t block, const Node& node) {
     if (!scalar(block, node, "limits")) return;
@@ -151,7 +170,7 @@ void read_joint(Reading& reading, const Element& element) {
     }
   }
   joint.type = find_type<JointType>(reading, scope, table, "", &Registry::joint);
-  if (joint.type == nullptr) return table.finish_without_type({"zero", "start", "limits"});
+  if (joint.type == nullptr) return table.finish_without_type({"zero", "start", "start_rate", "limits"});
   joint.coordinates.resize(joint.type->blocks.size());
   reading.starts[element.index].resize(joint.type->blocks.size());
   joint.values = read_values(reading, scope, table, *joint.type, placement.to_inlet).values;

@@ -42,11 +42,15 @@ struct Reading {
   std::vector<std::unique_ptr<Scope>> scopes;  ///< the scene itself first, included ones after those that include them
   Names names;
   Scene scene;
-  std::vector<Element> bodies, frames, joints, constraints, drives, records;
-  std::set<std::string> constraint_names, drive_names, record_names;
-  std::set<std::uint32_t> faulty_frames;   ///< their faults are reported; what sits on them says nothing
-  std::set<std::string> faulty_plugins;    ///< reported once, however many elements ask for them
-  std::vector<std::vector<Place>> starts;  ///< for each joint and block where `start` stands; line 0: nowhere
+  std::vector<Element> bodies, frames, joints, constraints, forces, drives, records;
+  std::set<std::string> constraint_names, force_names, drive_names, record_names;
+  std::set<std::uint32_t> faulty_frames;  ///< their faults are reported; what sits on them says nothing
+  std::set<std::string> faulty_plugins;   ///< reported once, however many elements ask for them
+  /// For each joint and block where `start` and `start_rate` stand; line 0: nowhere.
+  struct StartPlaces {
+    Place value, rate;
+  };
+  std::vector<std::vector<StartPlaces>> starts;
 
   Reporter reporter(const Scope& scope, std::string label) {
     return Reporter(findings, *scope.document, std::move(label));
@@ -70,12 +74,15 @@ Scope* read_scope(Reading& reading, std::unique_ptr<Document> document, const st
 Result<std::string> read_text_file(const std::filesystem::path& file);
 /// Reads [scene] into the scene.
 void read_header(Reading& reading, Scope& scope, Scene& scene);
+/// Reads [simulation] into the scene.
+void read_simulation(Reading& reading, Scope& scope, Scene& scene);
 /// Finds the elements of a scope and takes in their names, so that references may point forward.
 void declare_elements(Reading& reading, Scope& scope);
 void read_body(Reading& reading, const Element& element);
 void read_frame(Reading& reading, const Element& element);
 void read_joint(Reading& reading, const Element& element);
 void read_constraint(Reading& reading, const Element& element);
+void read_force(Reading& reading, const Element& element);
 void read_drive(Reading& reading, const Element& element);
 void read_record(Reading& reading, const Element& element);
 /// Gives a free joint to the first body of each component that no joint connects to the ground.

@@ -28,11 +28,13 @@ Result<Scene> read_document(Registry& registry, std::unique_ptr<Document> docume
   for (const auto& scope : reading.scopes) {
     Scene unused;
     read_header(reading, *scope, scope.get() == root ? reading.scene : unused);
+    read_simulation(reading, *scope, scope.get() == root ? reading.scene : unused);
   }
   for (const Element& element : reading.bodies) read_body(reading, element);
   for (const Element& element : reading.frames) read_frame(reading, element);
   for (const Element& element : reading.joints) read_joint(reading, element);
   for (const Element& element : reading.constraints) read_constraint(reading, element);
+  for (const Element& element : reading.forces) read_force(reading, element);
   for (const Element& element : reading.drives) read_drive(reading, element);
   for (const Element& element : reading.records) read_record(reading, element);
   for (const auto& scope : reading.scopes) scope->parameters.report_unused(reading.reporter(*scope, ""));

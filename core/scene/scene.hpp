@@ -38,11 +38,12 @@ struct FrameDescription {
   Source source;
 };
 
-/// What a scene says of one coordinate block; `start` has as many numbers as the block.
+/// What a scene says of one coordinate block; `start` has as many numbers as the block, `start_rate` as it has rates.
 struct CoordinateDescription {
-  double zero = 0.0;                            ///< value at which inlet and outlet coincide (scalars only)
-  std::optional<std::vector<double>> start;     ///< where the first closure starts
-  std::optional<std::array<double, 2>> limits;  ///< scalars only
+  double zero = 0.0;                              ///< value at which inlet and outlet coincide (scalars only)
+  std::optional<std::vector<double>> start;       ///< where the first closure starts
+  std::optional<std::array<double, 2>> limits;    ///< scalars only
+  std::optional<std::vector<double>> start_rate;  ///< with which a simulation starts
 };
 
 struct JointDescription {
@@ -65,6 +66,15 @@ struct ConstraintDescription {
   const ConstraintType* type = nullptr;
   std::vector<Value> values;
   std::vector<Attachment> frames;  ///< none or two
+  std::vector<CoordinateReference> coordinates;
+  Source source;
+};
+
+struct ForceDescription {
+  std::string name;
+  const ForceType* type = nullptr;
+  std::vector<Value> values;
+  std::vector<Attachment> frames;  ///< none, one or two
   std::vector<CoordinateReference> coordinates;
   Source source;
 };
@@ -104,6 +114,12 @@ struct RecordDescription {
   Attachment frame;
 };
 
+/// How a simulation is made, where the scene says so.
+struct SimulationDescription {
+  std::optional<double> tolerance;  ///< relative, of one step
+  std::optional<double> step;       ///< [s]
+};
+
 struct Scene {
   std::string name;
   std::string title;
@@ -111,11 +127,13 @@ struct Scene {
   std::optional<double> length;            ///< [m] characteristic length, where the scene sets it
   double duration = 1.0;                   ///< [s] that a run takes
   std::uint32_t steps = 100;               ///< of a run
-  std::vector<BodyDescription> bodies;     ///< ground first, then in file order
+  SimulationDescription simulation;
+  std::vector<BodyDescription> bodies;  ///< ground first, then in file order
   std::vector<FrameDescription> frames;
   std::vector<JointDescription> joints;
   std::vector<ConstraintDescription> constraints;
   std::vector<DriveDescription> drives;
+  std::vector<ForceDescription> forces;
   std::vector<RecordDescription> records;  ///< all coordinates, if the scene has no [[record]]
   std::uint64_t hash = 0;  ///< of the content, includes and parameters applied; not of comments or layout
 };

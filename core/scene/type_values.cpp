@@ -14,8 +14,14 @@ bool is_about_the_type(Code code) {
 class ParameterReader {
  public:
   ParameterReader(Reading& reading, Scope& scope, const ValueReader& values, const Matrix3& to_inlet,
-                  std::string_view value_unit, TypeValues& out)
-      : reading_(reading), scope_(scope), values_(values), to_inlet_(to_inlet), value_unit_(value_unit), out_(out) {}
+                  std::string_view value_unit, std::string_view column_unit, TypeValues& out)
+      : reading_(reading),
+        scope_(scope),
+        values_(values),
+        to_inlet_(to_inlet),
+        value_unit_(value_unit),
+        column_unit_(column_unit),
+        out_(out) {}
 
   Value read(const Parameter& parameter, const Node& node) {
     Value value;
@@ -97,7 +103,7 @@ class ParameterReader {
         continue;
       }
       for (std::size_t i = 0; i < row.items.size(); ++i) {
-        const auto number = values_.number(row.items[i], row_name, i == 0 ? parameter.unit : value_unit_);
+        const auto number = values_.number(row.items[i], row_name, i == 0 ? parameter.unit : column_unit_);
         complete = complete && number;
         numbers.push_back(number.value_or(0.0));
       }
@@ -143,7 +149,7 @@ class ParameterReader {
   Scope& scope_;
   const ValueReader& values_;
   const Matrix3& to_inlet_;
-  std::string_view value_unit_;
+  std::string_view value_unit_, column_unit_;
   TypeValues& out_;
 };
 
@@ -185,6 +191,8 @@ template const ConstraintType* find_type(Reading&, const Scope&, TableReader&, s
 template const FunctionType* find_type(Reading&, const Scope&, TableReader&, std::string_view,
                                        Result<const FunctionType*> (Registry::*)(std::string_view,
                                                                                  const PluginReference&));
+template const ForceType* find_type(Reading&, const Scope&, TableReader&, std::string_view,
+                                    Result<const ForceType*> (Registry::*)(std::string_view, const PluginReference&));
 
 Value fallback_value(const Parameter& parameter) {
   Value value;
@@ -196,7 +204,9 @@ Value fallback_value(const Parameter& parameter) {
 TypeValues read_values(Reading& reading, Scope& scope, TableReader& table, const Type& type, const Matrix3& to_inlet,
                        std::string_view value_unit) {
   TypeValues out;
-  ParameterReader reader(reading, scope, table.values(), to_inlet, value_unit, out);
+  // The columns of a function's table are its values; those of a force's table are forces, whatever it acts on.
+  const std::string_view column_unit = type.kind == PluginKind::function ? value_unit : std::string_view();
+  ParameterReader reader(reading, scope, table.values(), to_inlet, value_unit, column_unit, out);
   for (const Parameter& parameter : type.parameters) {
     Value value;
     if (const Node* node = table.find(parameter.name)) {

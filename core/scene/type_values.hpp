@@ -24,7 +24,8 @@ struct TypeValues {
 };
 
 /// Reads all parameters of a type. `to_inlet` turns the axes in which directions are given into inlet axes;
-/// `value_unit` is the unit of real parameters, and of the columns of tables, for which the schema has none. Errors:
+/// `value_unit` is the unit of real parameters, and of the columns of functions' tables, for which the schema has none.
+/// Errors:
 /// missing_key, wrong_kind, wrong_count, out_of_range and those of names. After a fault the values are incomplete.
 TypeValues read_values(Reading& reading, Scope& scope, TableReader& table, const Type& type,
                        const Matrix3& to_inlet = Matrix3::Identity(), std::string_view value_unit = "");

@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"parameter_name_twice", malformed, {"bad.joint", "parameter 1", "`first` stands twice"}},
                     Fault{"parameter_name_spaced", malformed, {"bad.joint", "`two words`"}},
                     Fault{"parameter_kind", malformed, {"bad.joint", "`second`", "kind is 77"}},
-                    Fault{"parameter_frame", malformed, {"bad.joint", "`second`", "for constraints only"}},
+                    Fault{"parameter_frame", malformed, {"bad.joint", "`second`", "for constraints and forces only"}},
                     Fault{"parameter_table_without_columns", malformed, {"bad.joint", "`second`", "columns = 0"}},
                     Fault{"parameter_counts", malformed, {"bad.joint", "`second`", "count_min is 4"}},
                     Fault{"parameter_fallback", malformed, {"bad.joint", "`second`", "fallback"}},
@@ -115,7 +115,27 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"no_rows", malformed, {"bad.constraint", "row_count is 0"}},
                     Fault{"row_name_null", malformed, {"bad.constraint", "row 0", "name is NULL"}},
                     Fault{"row_unit_null", malformed, {"bad.constraint", "`row`", "unit is NULL"}},
+                    Fault{"second_frame_optional", malformed, {"bad.constraint", "not required", "both frames"}},
                     Fault{"evaluate_null", malformed, {"bad.function", "evaluate is NULL"}}),
+    test_name);
+
+INSTANTIATE_TEST_SUITE_P(
+    Force, RefusedWhenLoaded,
+    testing::Values(Fault{"force_too_small", malformed, {"force table 0", "struct_size is 16"}},
+                    Fault{"act_null", malformed, {"bad.force", "evaluate is NULL"}},
+                    Fault{"act_on_nothing", malformed, {"bad.force", "no parameter of kind FRAME or COORDINATES"}},
+                    Fault{"act_on_three_frames", malformed, {"bad.force", "3 parameters of kind FRAME", "two at most"}},
+                    Fault{"no_frame_required", malformed, {"bad.force", "none of its parameters of kind FRAME"}},
+                    Fault{"act_on_two_lists", malformed, {"bad.force", "more than one parameter of kind COORDINATES"}},
+                    Fault{"states_null", malformed, {"bad.force", "state 0 is NULL"}},
+                    Fault{"state_name_null", malformed, {"bad.force", "state 1", "name is NULL"}},
+                    Fault{"state_name_twice", malformed, {"bad.force", "state 1", "`wear` stands twice"}},
+                    Fault{"state_unit_null", malformed, {"bad.force", "`state`", "unit is NULL"}},
+                    Fault{"initial_of_nothing", malformed, {"bad.force", "initial is given", "state_count is 0"}},
+                    Fault{"dissipation_alone", malformed, {"bad.force", "energy is NULL", "always 0"}},
+                    Fault{"switches_null", malformed, {"bad.force", "switches is NULL"}},
+                    Fault{"switches_uncounted", malformed, {"bad.force", "switch_count is 0"}},
+                    Fault{"switches_countless", malformed, {"bad.force", "switches"}}),
     test_name);
 
 /// These load; the fault shows when an instance is made or its motions are asked for.

@@ -10,7 +10,8 @@
 namespace koppel::test {
 namespace {
 
-constexpr std::array kinds = {PluginKind::joint, PluginKind::body, PluginKind::constraint, PluginKind::function};
+constexpr std::array kinds = {PluginKind::joint, PluginKind::body, PluginKind::constraint, PluginKind::function,
+                              PluginKind::force};
 
 const Type* find(Registry& registry, PluginKind kind, const std::string& name) {
   switch (kind) {
@@ -18,6 +19,7 @@ const Type* find(Registry& registry, PluginKind kind, const std::string& name) {
     case PluginKind::body: return expect_value(registry.body(name, {}));
     case PluginKind::constraint: return expect_value(registry.constraint(name, {}));
     case PluginKind::function: return expect_value(registry.function(name, {}));
+    case PluginKind::force: return expect_value(registry.force(name, {}));
   }
   return nullptr;
 }
@@ -54,6 +56,9 @@ TEST(StandardTypes, AreAllThere) {
   EXPECT_EQ(registry.names(PluginKind::constraint), (std::vector<std::string>{"distance", "coupling"}));
   EXPECT_EQ(registry.names(PluginKind::function),
             (std::vector<std::string>{"constant", "ramp", "sine", "polynomial", "table", "cycloid"}));
+  EXPECT_EQ(registry.names(PluginKind::force),
+            (std::vector<std::string>{"spring", "coordinate_spring", "stop", "bushing", "motor", "controller", "wrench",
+                                      "friction"}));
 }
 
 TEST(StandardTypes, AreTheSameAsSharedObjects) {

@@ -1,4 +1,4 @@
-// What becomes of bodies, joints, constraints, drives and records.
+// What becomes of bodies, joints, constraints, forces, drives, records and settings of the simulation.
 #include <cmath>
 #include <numbers>
 
@@ -96,6 +96,57 @@ TEST(Constraint, has_frames_or_coordinates) {
   EXPECT_EQ(gear.coordinates[1].block, 1u);
   EXPECT_EQ(value_of(gear.type->parameters, gear.values, "coordinates").count, 2u);
   EXPECT_EQ(value_of(gear.type->parameters, gear.values, "factors").numbers, (std::vector<double>{1.0, 2.0 / 3.0}));
+}
+
+TEST(Joint, has_rates_to_start_with) {
+  SceneReader reader;
+  const Scene scene = reader.good(chain +
+                                  "[[joint]]\nname = 'more'\ntype = 'free'\nbetween = ['ground', 'd']\n"
+                                  "start_rate = { rotation = [1, '90 deg', 3], y = '2 mm' }\n[[body]]\nname = 'd'\n");
+  const auto& coordinates = scene.joints.at(3).coordinates;
+  EXPECT_EQ(coordinates.at(0).start_rate, (std::vector<double>{1, std::numbers::pi / 2, 3}));
+  EXPECT_FALSE(coordinates.at(1).start_rate.has_value());
+  EXPECT_EQ(coordinates.at(2).start_rate, std::vector<double>{0.002});
+  EXPECT_FALSE(coordinates.at(2).start.has_value());
+}
+
+TEST(Force, acts_on_frames_or_coordinates) {
+  SceneReader reader;
+  const Scene scene =
+      reader.good(chain +
+                  "[[force]]\nname = 'pull'\ntype = 'spring'\nfrom = 'ground'\nto = {on = 'c', at = [1, 0, 0]}\n"
+                  "stiffness = 5\ntable = [[0, 0], ['1 mm', 2]]\n"
+                  "[[force]]\nname = 'wind'\ntype = 'wrench'\non = 'b'\naxes = 'world'\nforce = [1, 2, 3]\n"
+                  "[[force]]\nname = 'turn'\ntype = 'coordinate_spring'\nof = 'second.displacement'\nfree = '3 mm'\n");
+  ASSERT_EQ(scene.forces.size(), 3u);
+  const ForceDescription& pull = scene.forces[0];
+  EXPECT_EQ(pull.name, "pull");
+  ASSERT_EQ(pull.frames.size(), 2u);
+  EXPECT_EQ(pull.frames[0].body, ground);
+  EXPECT_EQ(pull.frames[1].body, BodyId{3});
+  EXPECT_EQ(value_of(pull.type->parameters, pull.values, "table").numbers, (std::vector<double>{0, 0, 0.001, 2}));
+  const ForceDescription& wind = scene.forces[1];
+  ASSERT_EQ(wind.frames.size(), 1u);
+  EXPECT_EQ(wind.frames[0].body, BodyId{2});
+  EXPECT_EQ(value_of(wind.type->parameters, wind.values, "against").count, 0u);
+  EXPECT_EQ(value_of(wind.type->parameters, wind.values, "axes").text, "world");
+  const ForceDescription& turn = scene.forces[2];
+  EXPECT_TRUE(turn.frames.empty());
+  ASSERT_EQ(turn.coordinates.size(), 1u);
+  EXPECT_EQ(turn.coordinates[0].joint, JointId{1});
+  EXPECT_EQ(turn.coordinates[0].block, 1u);
+  EXPECT_EQ(value_of(turn.type->parameters, turn.values, "free").numbers, std::vector<double>{0.003});
+}
+
+TEST(Simulation, chooses_for_itself_unless_it_is_told) {
+  SceneReader reader;
+  const SimulationDescription silent = reader.good("schema = 1\n").simulation;
+  EXPECT_FALSE(silent.tolerance.has_value());
+  EXPECT_FALSE(silent.step.has_value());
+  const SimulationDescription told =
+      reader.good("schema = 1\n[simulation]\ntolerance = 1e-6\nstep = '2 ms'\n").simulation;
+  EXPECT_EQ(told.tolerance, 1e-6);
+  EXPECT_EQ(told.step, 0.002);
 }
 
 TEST(Drive, is_named_like_its_coordinate) {

@@ -11,6 +11,9 @@ namespace {
 #define BODIES "schema = 1\n[[body]]\nname = 'crank'\n[[body]]\nname = 'rod'\n"
 #define PIN BODIES "[[joint]]\nname = 'pin'\ntype = 'revolute'\nbetween = ['ground', 'crank']\n"
 #define BALL BODIES "[[joint]]\nname = 'ball'\ntype = 'spherical'\nbetween = ['ground', 'crank']\n"
+#define SPRING PIN "[[force]]\nname = 's'\ntype = 'spring'\nfrom = 'ground'\nto = 'rod'\n"
+#define TORSION PIN "[[force]]\nname = 't'\ntype = 'coordinate_spring'\nof = 'pin.angle'\n"
+#define SIMULATION "schema = 1\n[simulation]\n"
 #define DRIVE PIN "[[drive]]\nof = 'pin.angle'\ntype = 'ramp'\nstart = 0\nslope = 1\n"
 
 struct Fault {
@@ -40,7 +43,44 @@ const Fault faults[] = {
     {"schema_as_text", "schema = '1'\n", Code::unknown_schema, 1, "'1'", "schema = 1"},
     {"unknown_table", BODIES "[[joints]]\nname = 'a'\n", Code::unknown_table, 6, "joints", "did you mean `joint`?"},
     {"unknown_top_level_key", "schema = 1\nradius = 3\n", Code::unknown_table, 2, "radius", "[parameters]"},
-    {"force", "schema = 1\n[[force]]\nname = 'f'\n", Code::reserved_table, 2, "force", "reserved"},
+    {"misspelt_force", "schema = 1\n[[forces]]\nname = 'f'\n", Code::unknown_table, 2, "forces",
+     "did you mean `force`?"},
+    {"force_without_type", "schema = 1\n[[force]]\nname = 'f'\n", Code::missing_key, 2, "[[force]]", "`type`"},
+    {"force_without_name", "schema = 1\n[[force]]\ntype = 'spring'\nfrom = 'ground'\nto = 'ground'\n",
+     Code::missing_key, 2, "[[force]]", "`name`"},
+    {"force_twice", SPRING "[[force]]\nname = 's'\ntype = 'spring'\nfrom = 'ground'\nto = 'rod'\n",
+     Code::duplicate_name, 16, "'s'", "taken"},
+    {"force_with_one_frame", PIN "[[force]]\nname = 's'\ntype = 'spring'\nto = 'rod'\n", Code::missing_key, 10,
+     "[[force]]", "`from` is missing"},
+    {"force_of_unknown_type", PIN "[[force]]\nname = 's'\ntype = 'sprng'\nto = 'rod'\n", Code::unknown_type, 12,
+     "'sprng'", "did you mean `spring`?"},
+    {"force_of_a_joints_type", PIN "[[force]]\nname = 's'\ntype = 'revolute'\n", Code::unknown_type, 12, "'revolute'",
+     "is a joint type, not a force type"},
+    {"force_at_unknown_frame", PIN "[[force]]\nname = 's'\ntype = 'spring'\nfrom = 'ground'\nto = 'rot'\n",
+     Code::unknown_frame, 14, "'rot'", "did you mean `rod`?"},
+    {"force_on_unknown_coordinate", PIN "[[force]]\nname = 't'\ntype = 'motor'\nof = 'pin.angel'\n",
+     Code::unknown_coordinate, 13, "angel", "`angle`"},
+    {"force_on_a_ball", BALL "[[force]]\nname = 't'\ntype = 'motor'\nof = 'ball.rotation'\n", Code::not_scalar, 13,
+     "'ball.rotation'", "single length or angle"},
+    {"misspelt_stiffness", SPRING "stifness = 3\n", Code::unknown_key, 15, "stifness", "did you mean `stiffness`?"},
+    {"negative_damping", SPRING "damping = -3\n", Code::out_of_range, 15, "-3", "at least 0 N s/m"},
+    {"angle_as_free_length", SPRING "length = '3 deg'\n", Code::wrong_kind, 15, "'3 deg'", "in m, not in rad"},
+    {"length_as_free_angle", TORSION "free = '3 mm'\n", Code::wrong_kind, 14, "'3 mm'", "in rad, not in m"},
+    {"table_of_one_row", TORSION "table = [[0, 0]]\n", Code::wrong_count, 14, "[[0, 0]]", "at least 2"},
+    {"simulation_is_no_table", "schema = 1\nsimulation = 3\n", Code::wrong_kind, 2, "3", "[simulation]"},
+    {"unknown_key_in_simulation", SIMULATION "tolerence = 1e-6\n", Code::unknown_key, 3, "tolerence",
+     "did you mean `tolerance`?"},
+    {"coarse_tolerance", SIMULATION "tolerance = 1\n", Code::out_of_range, 3, "1", "less than 1"},
+    {"no_tolerance", SIMULATION "tolerance = 0\n", Code::out_of_range, 3, "0", "greater than 0"},
+    {"step_backwards", SIMULATION "step = '-1 ms'\n", Code::out_of_range, 3, "'-1 ms'", "greater than 0"},
+    {"step_of_an_angle", SIMULATION "step = '1 deg'\n", Code::wrong_kind, 3, "'1 deg'", "in s, not in rad"},
+    {"start_rate_of_unknown_coordinate", PIN "start_rate = { angel = 1 }\n", Code::unknown_coordinate, 10, "angel",
+     "`angle`"},
+    {"start_rate_as_number", PIN "start_rate = 1\n", Code::wrong_kind, 10, "1", "a table"},
+    {"start_rate_as_list", PIN "start_rate = { angle = [1] }\n", Code::wrong_kind, 10, "[1]", "a number"},
+    {"start_rate_as_quaternion", BALL "start_rate = { rotation = [1, 0, 0, 0] }\n", Code::wrong_count, 10,
+     "[1, 0, 0, 0]", "[wx, wy, wz]"},
+    {"start_rate_in_metres", PIN "start_rate = { angle = '1 m' }\n", Code::wrong_kind, 10, "'1 m'", "in rad, not in m"},
     {"body_is_no_list", "schema = 1\n[body]\nname = 'a'\n", Code::wrong_kind, 2, "[body]", "[[body]]"},
     {"body_of_numbers", "schema = 1\nbody = [3]\n", Code::wrong_kind, 2, "3", "[[body]]"},
     {"scene_is_no_table", "schema = 1\nscene = 3\n", Code::wrong_kind, 2, "3", "[scene]"},
@@ -339,6 +379,18 @@ TEST(Findings, warn_of_a_start_that_a_drive_overrules) {
   ASSERT_EQ(warnings.size(), 1u) << reader.diagnostics.render();
   EXPECT_EQ(warnings[0].code, Code::start_ignored);
   EXPECT_EQ(warnings[0].source.line, 10);
+}
+
+TEST(Findings, warn_of_a_start_rate_that_a_drive_overrides) {
+  SceneReader reader;
+  reader.good(PIN
+              "start_rate = { angle = 1 }\n[[drive]]\nof = 'pin.angle'\ntype = 'constant'\nvalue = 1\n"
+              "[[joint]]\nname = 'q'\ntype = 'revolute'\nbetween = ['crank', 'rod']\nstart_rate = { angle = 1 }\n");
+  const auto warnings = reader.of(Severity::warning);
+  ASSERT_EQ(warnings.size(), 1u) << reader.diagnostics.render();
+  EXPECT_EQ(warnings[0].code, Code::start_ignored);
+  EXPECT_EQ(warnings[0].source.line, 10);
+  EXPECT_NE(warnings[0].message.find("start rate"), std::string::npos);
 }
 
 TEST(Findings, tell_of_files_that_cannot_be_read) {

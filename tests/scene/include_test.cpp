@@ -38,7 +38,10 @@ const std::string side =
     "[parameters]\nside = 1\ntrack = 1.5\nhalf = 'side*track/2'\n"
     "[[body]]\nname = 'carrier'\nat = [0, 'half', 0]\n"
     "[[frame]]\nname = 'wheel'\non = 'carrier'\nat = [0, '0.1*side', 0]\n"
-    "[[joint]]\nname = 'strut'\ntype = 'prismatic'\nbetween = ['ground', 'carrier']\n";
+    "[[joint]]\nname = 'strut'\ntype = 'prismatic'\nbetween = ['ground', 'carrier']\n"
+    "[[force]]\nname = 'hold'\ntype = 'spring'\nfrom = 'ground'\nto = 'wheel'\n"
+    "[[force]]\nname = 'push'\ntype = 'motor'\nof = 'strut.displacement'\n"
+    "[simulation]\nstep = 0.25\n";
 
 TEST(Include, gives_names_a_prefix_and_sets_parameters) {
   Folder folder;
@@ -71,6 +74,12 @@ TEST(Include, gives_names_a_prefix_and_sets_parameters) {
   EXPECT_EQ(scene->bodies[1].design.position, Vector3(0, 0.75, 0));
   EXPECT_EQ(scene->bodies[2].name, "right.carrier");
   EXPECT_EQ(scene->bodies[2].design.position, Vector3(0, -2, 0));
+  EXPECT_FALSE(scene->simulation.step.has_value());
+  ASSERT_EQ(scene->forces.size(), 4u);
+  EXPECT_EQ(scene->forces[0].name, "left.hold");
+  EXPECT_EQ(scene->forces[2].frames[1].body, BodyId{2});
+  EXPECT_EQ(scene->forces[3].name, "right.push");
+  EXPECT_EQ(scene->forces[3].coordinates[0].joint, JointId{2});
   ASSERT_EQ(scene->joints.size(), 3u);
   EXPECT_EQ(scene->joints[0].name, "axle");
   EXPECT_EQ(scene->joints[0].outlet.pose.position, Vector3(0, -0.1, 0));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -14,7 +15,9 @@
 namespace koppel::test {
 namespace {
 
-constexpr std::string_view elements[] = {"body", "frame", "joint", "constraint", "drive"};
+constexpr std::string_view joint_frames[] = {"inlet", "outlet"};
+constexpr std::string_view force_frames[] = {"from", "to", "against", "on"};
+constexpr std::string_view elements[] = {"body", "frame", "joint", "constraint", "drive", "force"};
 
 std::string number_text(double value) {
   char text[32];
@@ -111,7 +114,7 @@ void shuffle(toml::array& array, Random& random) {
 
 /// The values that `zero` and `start` give to a scalar coordinate change their sign.
 void negate_coordinate(toml::table& joint, std::string_view coordinate) {
-  for (const std::string_view key : {"zero", "start"}) {
+  for (const std::string_view key : {"zero", "start", "start_rate"}) {
     if (toml::table* values = joint[key].as_table()) negate(*values, coordinate);
   }
 }
@@ -182,6 +185,7 @@ std::map<std::string, std::string> Rewriting::rename(Random& random) {
   anew("joint", joints);
   anew("constraint", others);
   anew("drive", others);
+  anew("force", others);
   fixed.insert(bodies.begin(), bodies.end());
 
   const auto follow = [&](toml::node& node) {
@@ -192,22 +196,26 @@ std::map<std::string, std::string> Rewriting::rename(Random& random) {
     const std::string old = node.ref<std::string>();
     node.ref<std::string>() = joints.at(joint_of(old)) + old.substr(old.rfind('.'));
   };
-  const auto follow_keys = [&](toml::table& element, std::initializer_list<std::string_view> keys) {
+  const auto follow_keys = [&](toml::table& element, std::span<const std::string_view> keys) {
     for (const std::string_view key : keys) {
       if (toml::node* node = element.get(key)) follow(*node);
     }
   };
   each("frame", [&](toml::table& frame) { follow(*frame.get("on")); });
   each("joint", [&](toml::table& joint) {
-    follow_keys(joint, {"inlet", "outlet"});
+    follow_keys(joint, joint_frames);
     if (toml::array* between = joint["between"].as_array()) std::for_each(between->begin(), between->end(), follow);
   });
   each("constraint", [&](toml::table& constraint) {
-    follow_keys(constraint, {"from", "to"});
+    follow_keys(constraint, force_frames);
     if (toml::array* of = constraint["coordinates"].as_array())
       std::for_each(of->begin(), of->end(), follow_coordinate);
   });
   each("drive", [&](toml::table& drive) { follow_coordinate(*drive.get("of")); });
+  each("force", [&](toml::table& force) {
+    follow_keys(force, force_frames);
+    if (toml::node* of = force.get("of")) follow_coordinate(*of);
+  });
   return bodies;
 }
 
@@ -215,10 +223,11 @@ void Rewriting::reorder(Random& random) {
   for (const std::string_view key : elements) shuffle(tables(key), random);
 }
 
-/// Joints whose coordinates stand in a drive or a constraint.
+/// Joints whose coordinates stand in a drive, a constraint or a force.
 std::set<std::string> Rewriting::bound_joints() {
   std::set<std::string> bound;
   each("drive", [&](toml::table& drive) { bound.insert(joint_of(text_at(drive, "of"))); });
+  each("force", [&](toml::table& force) { bound.insert(joint_of(text_at(force, "of"))); });
   each("constraint", [&](toml::table& constraint) {
     const toml::array* of = constraint["coordinates"].as_array();
     for (std::size_t i = 0; of != nullptr && i < of->size(); ++i) {
@@ -251,6 +260,8 @@ bool Rewriting::swap(toml::table& joint) {
   const auto known = scalars.find(type);
   if (known == scalars.end()) return false;
   if (joint.contains("limits")) throw std::runtime_error("rewriting does not know limits");
+  // The angular velocity would have to be turned by where the joint starts.
+  if (joint["start_rate"]["rotation"]) return false;
   for (const std::string& coordinate : known->second) negate_coordinate(joint, coordinate);
   if (toml::array* quaternion = joint["start"]["rotation"].as_array()) {
     for (std::size_t i = 1; i < 4; ++i)
@@ -270,7 +281,7 @@ bool Rewriting::swap(toml::table& joint) {
 // T = Rz(angle1) R2(angle2) with the second axis across z. Its inverse R2(-angle2) Rz(-angle1) is such a product again
 // in frames whose z lies along the second axis: those turned by C, z to axis2, where the second axis is C'z.
 void Rewriting::swap_universal(toml::table& joint) {
-  for (const std::string_view key : {"zero", "start"}) {
+  for (const std::string_view key : {"zero", "start", "start_rate"}) {
     toml::table* values = joint[key].as_table();
     if (values == nullptr) continue;
     toml::table swapped;
@@ -320,8 +331,9 @@ void Rewriting::relocate(const Place& place) {
     shift_origin(body, place);
     turn_outside(body, place);
   });
-  // Joints first: they may name frames, which must not have moved yet.
+  // Joints and forces first: they may name frames, which must not have moved yet.
   each("joint", [&](toml::table& joint) { relocate_joint(joint, place); });
+  each("force", [&](toml::table& force) { relocate_force(force, place); });
   each("frame", [&](toml::table& frame) { relocate_frame(frame, place); });
   each("constraint", [](const toml::table&) { throw std::runtime_error("rewriting does not move constraints"); });
 }
@@ -339,6 +351,19 @@ void Rewriting::relocate_joint(toml::table& joint, const Place& place) {
     toml::table frame = described(*joint.get(side));
     relocate_frame(frame, place);
     joint.insert_or_assign(side, frame);
+  }
+}
+
+void Rewriting::relocate_force(toml::table& force, const Place& place) {
+  for (const std::string_view key : force_frames) {
+    if (!force.contains(key)) continue;
+    toml::table frame = described(*force.get(key));
+    relocate_frame(frame, place);
+    force.insert_or_assign(key, frame);
+  }
+  if (text_at(force, "axes") != "world") return;
+  for (const std::string_view key : {"force", "moment"}) {
+    force.insert_or_assign(key, moved(force.get(key), {0, 0, 0}, place.rotation(), {0, 0, 0}));
   }
 }
 

@@ -33,12 +33,13 @@ class Rewriting {
 
   std::string text() const;
 
-  /// Gives bodies, frames, joints, constraints and drives new names in a random order; old to new ones of the bodies.
+  /// Gives bodies, frames, joints, constraints, drives and forces new names in a random order; old to new ones of the
+  /// bodies.
   std::map<std::string, std::string> rename(Random& random);
-  /// Shuffles bodies, frames, joints, constraints and drives.
+  /// Shuffles bodies, frames, joints, constraints, drives and forces.
   void reorder(Random& random);
-  /// Swaps inlet and outlet of a random half of the joints that are not driven, as far as their motion is one of the
-  /// same type then: R, P, H, C, S, T and weld; how many it swapped.
+  /// Swaps inlet and outlet of a random half of the joints that no drive or force acts on, as far as their motion is
+  /// one of the same type then: R, P, H, C, S, T and weld; how many it swapped.
   std::size_t swap_joints(Random& random);
   /// Moves everything that is fixed in the world, and gravity.
   void relocate(const Place& place);
@@ -55,6 +56,7 @@ class Rewriting {
   bool swap(toml::table& joint);
   void swap_universal(toml::table& joint);
   void relocate_joint(toml::table& joint, const Place& place);
+  void relocate_force(toml::table& force, const Place& place);
   void relocate_frame(toml::table& frame, const Place& place);
 
   toml::table root_;

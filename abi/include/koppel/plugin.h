@@ -1,4 +1,4 @@
-/* koppel/plugin.h - extend koppel: joints, bodies, constraints and functions as plugins.
+/* koppel/plugin.h - extend koppel: joints, bodies, constraints, functions and forces as plugins.
  *
  * A plugin is a shared library (or a linked-in object) that exports one object, `koppel_plugin`, of type
  * koppel_plugin_entry. Nothing happens when it is loaded; the engine calls the entry's functions.
@@ -261,13 +261,52 @@ typedef struct koppel_function_type {
   koppel_status (*evaluate)(size_t count, const void* const* instances, const double* x, double* out);
 } koppel_function_type;
 
+/* ---- forces: "koppel.force/0" -------------------------------------------------------------------------------------
+ * What acts on one frame or between two (parameters of kind FRAME: none, one, which the ground then answers, or two, of
+ * which one may be left out if it is not required), on joint coordinates (COORDINATES), or on both. The configuration's
+ * pose and twist are those of the second frame relative to the first; of a single frame relative to the ground. */
+
+/* An internal state: what it is called and how it is measured. The engine integrates it along with the motion. */
+typedef struct koppel_internal_state {
+  uint32_t struct_size;
+  const char* name;
+  const char* unit;
+} koppel_internal_state;
+
+typedef struct koppel_force_type {
+  uint32_t struct_size;
+  const koppel_type* type;
+  const koppel_internal_state* states;
+  size_t state_count;
+  /* Where the internal states start, state_count each; NULL: at zero. */
+  koppel_status (*initial)(size_t count, const void* const* instances, double* states);
+  /* wrench: 6 each, [moment; force] on the second frame, in its axes and about its origin; the opposite acts on the
+   * first frame, along the same line. NULL without frames. effort: `coordinates` each, [N m] on angles, [N] on lines,
+   * positive in the direction of the rate; NULL without coordinates. state_rates: state_count each; NULL without. */
+  koppel_status (*evaluate)(size_t count, const void* const* instances, const koppel_configuration* at,
+                            const double* states, double* wrench, double* effort, double* state_rates);
+  /* Potential energy [J] at a position: twist and v are NULL. A type that gives it is a store: what flows into it can
+   * be had back, except for what it says to dissipate. NULL: whatever the force does is work from outside. */
+  koppel_status (*energy)(size_t count, const void* const* instances, const koppel_configuration* at,
+                          const double* states, double* energy);
+  /* Power [W] that is lost in it, of a type with energy: the power of its wrench and efforts is minus the rate of the
+   * energy, minus this. NULL: nothing is lost. */
+  koppel_status (*dissipation)(size_t count, const void* const* instances, const koppel_configuration* at,
+                               const double* states, double* power);
+  /* Numbers whose change of sign marks a kink or jump of the force, as when a stop is met: integration steps end there.
+   * switch_count each. */
+  size_t switch_count;
+  koppel_status (*switches)(size_t count, const void* const* instances, const koppel_configuration* at,
+                            const double* states, double* values);
+} koppel_force_type;
+
 /* ------------------------------------------------------------------------------------------------ entry */
 
 #define KOPPEL_JOINT_INTERFACE "koppel.joint/0"
 #define KOPPEL_BODY_INTERFACE "koppel.body/0"
 #define KOPPEL_CONSTRAINT_INTERFACE "koppel.constraint/0"
 #define KOPPEL_FUNCTION_INTERFACE "koppel.function/0"
-#define KOPPEL_FORCE_INTERFACE "koppel.force/0" /* reserved */
+#define KOPPEL_FORCE_INTERFACE "koppel.force/0"
 
 typedef struct koppel_plugin_entry {
   uint32_t struct_size;

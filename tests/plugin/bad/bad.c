@@ -160,6 +160,9 @@
 #ifndef SECOND_FRAME
 #define SECOND_FRAME KOPPEL_PARAMETER_FRAME
 #endif
+#ifndef SECOND_REQUIRED
+#define SECOND_REQUIRED 1
+#endif
 #ifndef CONSTRAINT_ROWS
 #define CONSTRAINT_ROWS 1
 #endif
@@ -171,6 +174,65 @@
 #endif
 #ifndef EVALUATE
 #define EVALUATE evaluate
+#endif
+
+/* ---- the force: on one frame and on coordinates, with two internal states */
+#ifndef FORCE_SIZE
+#define FORCE_SIZE sizeof(koppel_force_type)
+#endif
+#ifndef ACT
+#define ACT act
+#endif
+#ifndef ACT_STATUS
+#define ACT_STATUS KOPPEL_OK
+#endif
+#ifndef ACT_NUMBER
+#define ACT_NUMBER 1.0
+#endif
+#ifndef ACT_WRITES
+#define ACT_WRITES 1
+#endif
+#ifndef SUBJECT_KINDS
+#define SUBJECT_KINDS KOPPEL_PARAMETER_FRAME, KOPPEL_PARAMETER_COORDINATES, KOPPEL_PARAMETER_REAL
+#endif
+#ifndef ON_REQUIRED
+#define ON_REQUIRED 1
+#endif
+#ifndef STATES
+#define STATES states
+#endif
+#ifndef STATE_COUNT
+#define STATE_COUNT 2
+#endif
+#ifndef STATE_NAME
+#define STATE_NAME "state"
+#endif
+#ifndef STATE_UNIT
+#define STATE_UNIT "m"
+#endif
+#ifndef INITIAL_NUMBER
+#define INITIAL_NUMBER 0.5
+#endif
+#ifndef ENERGY
+#define ENERGY energy
+#endif
+#ifndef ENERGY_STATUS
+#define ENERGY_STATUS KOPPEL_OK
+#endif
+#ifndef ENERGY_NUMBER
+#define ENERGY_NUMBER 2.0
+#endif
+#ifndef DISSIPATION_NUMBER
+#define DISSIPATION_NUMBER 3.0
+#endif
+#ifndef SWITCHES
+#define SWITCHES switches
+#endif
+#ifndef SWITCH_COUNT
+#define SWITCH_COUNT 1
+#endif
+#ifndef SWITCH_NUMBER
+#define SWITCH_NUMBER 4.0
 #endif
 
 #define SIZED(type) .struct_size = (uint32_t)sizeof(type)
@@ -239,6 +301,48 @@ koppel_status evaluate(size_t count, const void* const* instances, const double*
   return KOPPEL_OK;
 }
 
+koppel_status initial(size_t count, const void* const* instances, double* out) {
+  size_t i;
+  (void)instances;
+  for (i = 0; i < STATE_COUNT * count; ++i) out[i] = INITIAL_NUMBER;
+  return KOPPEL_OK;
+}
+
+koppel_status act(size_t count, const void* const* instances, const koppel_configuration* at, const double* x,
+                  double* wrench, double* effort, double* rates) {
+  size_t i;
+  (void)instances, (void)x;
+  if (!ACT_WRITES) return ACT_STATUS;
+  for (i = 0; i < 6 * count && wrench != NULL; ++i) wrench[i] = ACT_NUMBER;
+  for (i = 0; i < at->coordinates * count && effort != NULL; ++i) effort[i] = 1;
+  for (i = 0; i < 2 * count; ++i) rates[i] = 1;
+  return ACT_STATUS;
+}
+
+koppel_status energy(size_t count, const void* const* instances, const koppel_configuration* at, const double* x,
+                     double* out) {
+  size_t i;
+  (void)instances, (void)at, (void)x;
+  for (i = 0; i < count; ++i) out[i] = ENERGY_NUMBER;
+  return ENERGY_STATUS;
+}
+
+koppel_status dissipation(size_t count, const void* const* instances, const koppel_configuration* at, const double* x,
+                          double* out) {
+  size_t i;
+  (void)instances, (void)at, (void)x;
+  for (i = 0; i < count; ++i) out[i] = DISSIPATION_NUMBER;
+  return KOPPEL_OK;
+}
+
+koppel_status switches(size_t count, const void* const* instances, const koppel_configuration* at, const double* x,
+                       double* out) {
+  size_t i;
+  (void)instances, (void)at, (void)x;
+  for (i = 0; i < count; ++i) out[i] = SWITCH_NUMBER;
+  return KOPPEL_OK;
+}
+
 const double fallback = FALLBACK;
 const double minimum = MINIMUM;
 const koppel_parameter parameters[] = {
@@ -277,8 +381,9 @@ const koppel_type body_type = {SIZED(koppel_type), .name = "bad.body"};
 const koppel_body_type body = {SIZED(koppel_body_type), .type = &body_type, .inertia = INERTIA,
                                .coordinates = BODY_COORDINATES};
 
-const koppel_parameter frames[] = {{SIZED(koppel_parameter), .kind = KOPPEL_PARAMETER_FRAME, .name = "from"},
-                                   {SIZED(koppel_parameter), .kind = SECOND_FRAME, .name = "to"}};
+const koppel_parameter frames[] = {
+    {SIZED(koppel_parameter), .kind = KOPPEL_PARAMETER_FRAME, .name = "from", .required = 1},
+    {SIZED(koppel_parameter), .kind = SECOND_FRAME, .name = "to", .required = SECOND_REQUIRED}};
 const koppel_type constraint_type = {SIZED(koppel_type), .name = "bad.constraint", .parameters = frames,
                                      .parameter_count = 2};
 const koppel_constraint_type constraint = {
@@ -288,6 +393,26 @@ const koppel_constraint_type constraint = {
 
 const koppel_type function_type = {SIZED(koppel_type), .name = "bad.function"};
 const koppel_function_type function = {SIZED(koppel_function_type), .type = &function_type, .evaluate = EVALUATE};
+
+const int32_t kinds[] = {SUBJECT_KINDS};
+koppel_parameter subjects[] = {
+    {SIZED(koppel_parameter), .name = "on", .required = ON_REQUIRED},
+    {SIZED(koppel_parameter), .name = "of"},
+    {SIZED(koppel_parameter), .name = "with"},
+};
+const koppel_internal_state states[] = {{SIZED(koppel_internal_state), .name = "wear", .unit = "m"},
+                                        {SIZED(koppel_internal_state), .name = STATE_NAME, .unit = STATE_UNIT}};
+const koppel_type force_type = {SIZED(koppel_type), .name = "bad.force", .parameters = subjects, .parameter_count = 3};
+const koppel_force_type force = {.struct_size = (uint32_t)(FORCE_SIZE),
+                                 .type = &force_type,
+                                 .states = STATES,
+                                 .state_count = STATE_COUNT,
+                                 .initial = initial,
+                                 .evaluate = ACT,
+                                 .energy = ENERGY,
+                                 .dissipation = dissipation,
+                                 .switch_count = SWITCH_COUNT,
+                                 .switches = SWITCHES};
 
 #ifdef UNRESOLVED
 extern double nobody_defines_this(void);
@@ -306,6 +431,11 @@ const void* type_table(const char* interface_id, size_t index) {
   if (strcmp(interface_id, KOPPEL_BODY_INTERFACE) == 0) return &body;
   if (strcmp(interface_id, KOPPEL_CONSTRAINT_INTERFACE) == 0) return &constraint;
   if (strcmp(interface_id, KOPPEL_FUNCTION_INTERFACE) == 0) return &function;
+  if (strcmp(interface_id, KOPPEL_FORCE_INTERFACE) == 0) {
+    size_t i;
+    for (i = 0; i < 3; ++i) subjects[i].kind = kinds[i];
+    return &force;
+  }
   return NULL;
 }
 

@@ -51,6 +51,7 @@ Equations::Equations(const Mechanism& m)
     locals_[i].q.assign(relation.coupled.size(), 0.0);
     locals_[i].v.assign(relation.coupled.size(), 0.0);
     locals_[i].out.assign(relation.rows, 0.0);
+    block_.resize(std::max(block_.size(), relation.rows * (relation.path.size() + relation.coupled.size())));
   }
 }
 
@@ -150,28 +151,39 @@ bool Equations::evaluate_constraint(const Relation& relation, Local& local) {
   return true;
 }
 
+void Equations::relation_jacobian(std::size_t index, double* block) const {
+  const Relation& relation = mechanism.relations[index];
+  const Local& local = locals_[index];
+  const Matrix3 to_b = local.b.rotation.transpose();
+  for (std::uint32_t k = 0; k < relation.rows; ++k) {
+    const Eigen::Map<const Eigen::Matrix<double, 1, 6>> row(local.by_twist.data() + std::size_t{6} * k);
+    const double scale = mechanism.row_scale[relation.first_row + k];
+    const Vector3 about = scale * (row.head<3>() * to_b).transpose();
+    const Vector3 along = scale * (row.tail<3>() * to_b).transpose();
+    for (const PathRate& path : relation.path) {
+      const Column& c = kinematics.columns[path.rate];
+      const Vector3 velocity = c.linear + c.angular.cross(local.b.position - c.point);
+      *block++ = path.sign * (about.dot(c.angular) + along.dot(velocity));
+    }
+    const std::size_t count = relation.coupled.size();
+    for (std::size_t j = 0; j < count; ++j) *block++ = scale * local.by_rate[k * count + j];
+  }
+}
+
 void Equations::evaluate_jacobian() {
   for (std::size_t i = 0; i < mechanism.relations.size(); ++i) {
     const Relation& relation = mechanism.relations[i];
-    const Local& local = locals_[i];
-    const auto rows = static_cast<Eigen::Index>(relation.rows), first = static_cast<Eigen::Index>(relation.first_row);
-    if (relation.kind == RelationKind::constraint) jacobian.middleRows(first, rows).setZero();
-    const Matrix3 to_b = local.b.rotation.transpose();
-    for (Eigen::Index k = 0; k < rows; ++k) {
-      const Eigen::Map<const Eigen::Matrix<double, 1, 6>> row(local.by_twist.data() + 6 * k);
-      const double scale = mechanism.row_scale[relation.first_row + static_cast<std::uint32_t>(k)];
-      const Vector3 about = scale * (row.head<3>() * to_b).transpose();
-      const Vector3 along = scale * (row.tail<3>() * to_b).transpose();
-      for (const PathRate& path : relation.path) {
-        const Column& c = kinematics.columns[path.rate];
-        const Vector3 velocity = c.linear + c.angular.cross(local.b.position - c.point);
-        jacobian(first + k, path.column) =
-            path.sign * mechanism.rate_scale[path.rate] * (about.dot(c.angular) + along.dot(velocity));
-      }
-      for (std::size_t j = 0; j < relation.coupled.size(); ++j) {
-        const PathRate& rate = relation.coupled[j];
-        jacobian(first + k, rate.column) += scale * mechanism.rate_scale[rate.rate] *
-                                            local.by_rate[static_cast<std::size_t>(k) * relation.coupled.size() + j];
+    relation_jacobian(i, block_.data());
+    const double* entry = block_.data();
+    for (std::uint32_t row = relation.first_row; row < relation.first_row + relation.rows; ++row) {
+      if (relation.kind == RelationKind::constraint) jacobian.row(row).setZero();
+      for (const auto* rates : {&relation.path, &relation.coupled}) {
+        // A constraint's coordinate may lie on its path too.
+        for (const PathRate& rate : *rates) {
+          double& at = jacobian(row, rate.column);
+          const double value = mechanism.rate_scale[rate.rate] * *entry++;
+          at = rates == &relation.coupled ? at + value : value;
+        }
       }
     }
   }

@@ -30,6 +30,9 @@ class Equations {
   bool evaluate(const Eigen::VectorXd& q, double time);
   /// The Jacobian at the position last evaluated.
   void evaluate_jacobian();
+  /// One relation's rows of it in its own columns, row by row: those of its path, then its coupled ones. Rates are not
+  /// scaled here.
+  void relation_jacobian(std::size_t relation, double* block) const;
   /// Frame a of a relation in the world, at the position last evaluated.
   const Pose& frame_a(std::size_t relation) const { return locals_[relation].a; }
   /// The wrench on frame b, about the world's origin and in its axes, by multipliers of a relation's scaled rows (all
@@ -76,6 +79,7 @@ class Equations {
 
   double time_ = 0.0;
   std::vector<Local> locals_;
+  std::vector<double> block_;  ///< of one relation's Jacobian
   std::array<double, 12> pose_array_{};
   std::array<double, 6> twist_array_{};
   std::string (*culprit_kind_)(const Mechanism&, std::uint32_t) = nullptr;

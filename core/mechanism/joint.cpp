@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "mechanism/coordinates.hpp"
+#include "mechanism/elementary_motion.hpp"
 #include "plugin/motion.hpp"
-#include "spatial/quaternion.hpp"
-#include "spatial/rotation.hpp"
 
 namespace koppel {
 namespace {
@@ -28,53 +27,6 @@ ElementaryMotion compiled(const koppel_motion& from, const JointBlock& block) {
     motion.point = Vector3(from.point[0], from.point[1], from.point[2]);
   if (motion.kind == ElementaryMotionKind::screw) motion.pitch = from.pitch;
   return motion;
-}
-
-/// Applies one elementary motion, or its inverse, to a frame and writes its columns.
-void step_one(const ElementaryMotion& motion, const double* q, bool reversed, Pose& frame, Column* columns) {
-  const double sign = reversed ? -1.0 : 1.0;
-  if (motion.kind == ElementaryMotionKind::free_rotation) {
-    const Matrix3 turn = rotation_of_quaternion<double>(Vector4(q[0], q[1], q[2], q[3]));
-    const Vector3 centre = frame * motion.point;
-    const Matrix3 before = frame.rotation;
-    frame.rotation = reversed ? Matrix3(before * turn.transpose()) : Matrix3(before * turn);
-    frame.position = centre - frame.rotation * motion.point;
-    // The rates are components in outlet axes: those after the turn, or before it when the joint is walked backwards.
-    const Matrix3& outlet = reversed ? before : frame.rotation;
-    for (int i = 0; i < 3; ++i) columns[i] = {sign * outlet.col(i), Vector3::Zero(), centre};
-    return;
-  }
-  const double value = sign * (q[0] - motion.zero);
-  const Vector3 axis = frame.rotation * motion.axis;
-  if (motion.kind == ElementaryMotionKind::translation) {
-    frame.position += value * axis;
-    columns[0] = {Vector3::Zero(), sign * axis, frame.position};
-    return;
-  }
-  const Vector3 on_axis = frame * motion.point;
-  const Vector3 advance = motion.pitch * axis;
-  frame.rotation = frame.rotation * rotation_about<double>(motion.axis, value);
-  frame.position = on_axis - frame.rotation * motion.point + value * advance;
-  columns[0] = {sign * axis, sign * advance, on_axis};
-}
-
-/// Carries a motion over one elementary motion whose columns are given (K-II-2.1).
-void step_motion_one(const ElementaryMotion& motion, const double* v, const double* a, const Column* columns,
-                     FrameMotion& state) {
-  state.shift(columns[0].point);
-  Vector3 turn = Vector3::Zero(), slide = Vector3::Zero();
-  Vector3 turn_rate = Vector3::Zero(), slide_rate = Vector3::Zero();
-  const int count = motion.kind == ElementaryMotionKind::free_rotation ? 3 : 1;
-  for (int i = 0; i < count; ++i) {
-    turn += v[i] * columns[i].angular;
-    slide += v[i] * columns[i].linear;
-    turn_rate += a[i] * columns[i].angular;
-    slide_rate += a[i] * columns[i].linear;
-  }
-  state.acceleration += 2.0 * state.angular_velocity.cross(slide) + slide_rate;
-  state.angular_acceleration += state.angular_velocity.cross(turn) + turn_rate;
-  state.velocity += slide;
-  state.angular_velocity += turn;
 }
 
 }  // namespace
@@ -118,10 +70,12 @@ std::vector<std::string> Joint::numerical_parts() const {
 bool Joint::step(const double* joint_q, bool reversed, Pose& frame, Column* columns) const {
   if (is_product()) {
     const std::size_t n = motions_.size();
+    PlainPose moved(frame);
     for (std::size_t i = 0; i < n; ++i) {
       const ElementaryMotion& motion = motions_[reversed ? n - 1 - i : i];
-      step_one(motion, joint_q + motion.q, reversed, frame, columns + motion.v);
+      step_one(motion, joint_q + motion.q, reversed, moved, columns + motion.v);
     }
+    moved.store(frame);
     return true;
   }
   Pose relative;
@@ -142,11 +96,13 @@ bool Joint::step_motion(const double* joint_q, const double* joint_v, const doub
                         const Pose& near, const Pose& far, const Column* columns, FrameMotion& motion) const {
   if (is_product()) {
     const std::size_t n = motions_.size();
+    PlainMotion moved(motion);
     for (std::size_t i = 0; i < n; ++i) {
       const ElementaryMotion& m = motions_[reversed ? n - 1 - i : i];
-      step_motion_one(m, joint_v + m.v, joint_a + m.v, columns + m.v, motion);
+      step_motion_one(m, joint_v + m.v, joint_a + m.v, columns + m.v, moved);
     }
-    motion.shift(far.position);
+    moved.shift(Plain3(far.position));
+    moved.store(motion);
     return true;
   }
   Vector6 relative_bias;
@@ -193,7 +149,9 @@ bool Joint::column_rates(const double* joint_q, const double* joint_v, bool reve
       const bool turns_with_far_side = m.kind == ElementaryMotionKind::free_rotation && !reversed;
       motion.shift(columns[m.v].point);
       const FrameMotion before = motion;
-      step_motion_one(m, joint_v + m.v, rest.data(), columns + m.v, motion);
+      PlainMotion moved(motion);
+      step_motion_one(m, joint_v + m.v, rest.data(), columns + m.v, moved);
+      moved.store(motion);
       const Vector3 turning = turns_with_far_side ? motion.angular_velocity : before.angular_velocity;
       for (std::uint32_t k = m.v; k < m.v + (m.kind == ElementaryMotionKind::free_rotation ? 3u : 1u); ++k) {
         rates[k] = {turning.cross(columns[k].angular), turning.cross(columns[k].linear), before.velocity};

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "mechanism/elementary_motion.hpp"
+
 namespace koppel {
 
 Kinematics::Kinematics(const Mechanism& mechanism)
@@ -15,15 +17,24 @@ bool forward_position(const Mechanism& mechanism, const double* q, Kinematics& k
   for (std::size_t i = 0; i < mechanism.steps.size(); ++i) {
     const TreeStep& step = mechanism.steps[i];
     const Joint& joint = mechanism.joints[step.joint.index()];
-    const Pose& parent = kinematics.poses[step.parent];
-    kinematics.near[i] = step.near_is_parent ? parent : parent * step.to_near;
-    Pose& far = kinematics.far[i];
-    far = kinematics.near[i];
-    if (!joint.step(q + joint.q, step.reversed, far, kinematics.columns.data() + joint.v)) {
-      kinematics.culprit = step.joint;
-      return false;
+    Column* const columns = kinematics.columns.data() + joint.v;
+    PlainPose frame(kinematics.poses[step.parent]);
+    if (!step.near_is_parent) frame = frame.times(step.to_near);
+    frame.store(kinematics.near[i]);
+    // Joints of one motion, which most are, without a call.
+    if (joint.motions().size() == 1) {
+      step_one(joint.motions().front(), q + joint.q, step.reversed, frame, columns);
+      frame.store(kinematics.far[i]);
+    } else {
+      kinematics.far[i] = kinematics.near[i];
+      if (!joint.step(q + joint.q, step.reversed, kinematics.far[i], columns)) {
+        kinematics.culprit = step.joint;
+        return false;
+      }
+      frame = PlainPose(kinematics.far[i]);
     }
-    kinematics.poses[step.child] = step.far_is_child ? far : far * step.from_far;
+    if (!step.far_is_child) frame = frame.times(step.from_far);
+    frame.store(kinematics.poses[step.child]);
   }
   return true;
 }
@@ -33,14 +44,22 @@ bool forward_motion(const Mechanism& mechanism, const double* q, const double* v
   for (std::size_t i = 0; i < mechanism.steps.size(); ++i) {
     const TreeStep& step = mechanism.steps[i];
     const Joint& joint = mechanism.joints[step.joint.index()];
-    FrameMotion& motion = kinematics.motions[step.child];
-    motion = kinematics.motions[step.parent];
-    if (!joint.step_motion(q + joint.q, v + joint.v, a + joint.v, step.reversed, kinematics.near[i], kinematics.far[i],
-                           kinematics.columns.data() + joint.v, motion)) {
-      kinematics.culprit = step.joint;
-      return false;
+    const Column* const columns = kinematics.columns.data() + joint.v;
+    FrameMotion& child = kinematics.motions[step.child];
+    PlainMotion motion(kinematics.motions[step.parent]);
+    if (joint.motions().size() == 1) {
+      step_motion_one(joint.motions().front(), v + joint.v, a + joint.v, columns, motion);
+    } else {
+      child = kinematics.motions[step.parent];
+      if (!joint.step_motion(q + joint.q, v + joint.v, a + joint.v, step.reversed, kinematics.near[i],
+                             kinematics.far[i], columns, child)) {
+        kinematics.culprit = step.joint;
+        return false;
+      }
+      motion = PlainMotion(child);
     }
-    motion.shift(kinematics.poses[step.child].position);
+    motion.shift(Plain3(kinematics.poses[step.child].position));
+    motion.store(child);
   }
   return true;
 }

@@ -1,0 +1,380 @@
+#include "dynamics/equations_of_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+#include "closure/newton.hpp"
+#include "dynamics/energy.hpp"
+#include "dynamics/inverse_dynamics.hpp"
+
+namespace koppel {
+namespace {
+
+constexpr double redundant = 1e-9;  // part of the greatest entry below which a row follows from the others
+constexpr double rounding = 1e-14;  // scaled residual at which nothing more is gained
+constexpr double all_but = 1e-12;   // and below which a step that gains less than half has met rounding
+constexpr int most_iterations = 12;
+
+/// Calls visit(row, column, place in the relation's block) for every entry.
+template <typename Visit>
+void for_each_entry(const Relation& relation, const Visit& visit) {
+  std::size_t place = 0;
+  for (std::uint32_t k = 0; k < relation.rows; ++k) {
+    for (const auto* rates : {&relation.path, &relation.coupled}) {
+      for (const PathRate& rate : *rates) visit(relation.first_row + k, rate.column, place++);
+    }
+  }
+}
+
+RowPattern pattern_of(const Mechanism& mechanism) {
+  std::vector<std::vector<std::uint32_t>> rows(mechanism.rows);
+  for (const Relation& relation : mechanism.relations) {
+    for_each_entry(relation,
+                   [&](std::uint32_t row, std::uint32_t column, std::size_t) { rows[row].push_back(column); });
+  }
+  RowPattern pattern;
+  pattern.columns = mechanism.columns;
+  pattern.first.push_back(0);
+  for (auto& row : rows) {
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
+    pattern.first.push_back(static_cast<std::uint32_t>(pattern.column.size()));
+  }
+  return pattern;
+}
+
+/// Where each entry of each relation's block goes in the pattern, one relation after another.
+std::vector<std::size_t> order_of(const Mechanism& mechanism, const RowPattern& pattern) {
+  std::vector<std::size_t> order;
+  for (const Relation& relation : mechanism.relations) {
+    for_each_entry(relation, [&](std::uint32_t row, std::uint32_t column, std::size_t) {
+      const auto begin = pattern.column.begin() + pattern.first[row];
+      const auto end = pattern.column.begin() + pattern.first[row + 1];
+      order.push_back(static_cast<std::size_t>(std::lower_bound(begin, end, column) - pattern.column.begin()));
+    });
+  }
+  return order;
+}
+
+}  // namespace
+
+EquationsOfMotion::EquationsOfMotion(std::shared_ptr<const Mechanism> m, Inertias inertias)
+    : mechanism_(std::move(m)),
+      inertias_(std::move(inertias)),
+      layout_(*mechanism_),
+      mass_matrix_(layout_, inertias_),
+      tree_mass_(layout_),
+      articulated_(layout_, inertias_),
+      equations_(*mechanism_),
+      forces_(*mechanism_),
+      elimination_(pattern_of(*mechanism_), mechanism_->unknowns),
+      inputs_(*mechanism_),
+      q_(mechanism_->nq),
+      v_(Eigen::VectorXd::Zero(mechanism_->nv)),
+      a_(v_),
+      zero_(v_),
+      step_(v_),
+      step_rates_(v_),
+      efforts_(v_),
+      residual_efforts_(v_),
+      force_efforts_(v_),
+      x_(Eigen::VectorXd::Zero(mechanism_->columns)),
+      b_(Eigen::VectorXd::Zero(mechanism_->rows)),
+      multipliers_(b_),
+      on_nodes_(mechanism_->nodes),
+      carried_(mechanism_->nodes) {
+  for (std::uint32_t i = 0; i < mechanism_->loops; ++i) {
+    const Relation& loop = mechanism_->relations[i];
+    if (loop.kind != RelationKind::cut_joint) continue;
+    const Joint& joint = mechanism_->joints[loop.joint.index()];
+    for (std::uint32_t k = joint.q; k < joint.q + joint.nq; ++k) cut_.push_back(k);
+  }
+  const RowPattern pattern = pattern_of(*mechanism_);
+  order_ = order_of(*mechanism_, pattern);
+  values_.assign(pattern.column.size(), 0.0);
+  for (const Relation& relation : mechanism_->relations) {
+    block_.resize(std::max(block_.size(), relation.rows * (relation.path.size() + relation.coupled.size())));
+  }
+}
+
+bool EquationsOfMotion::fail(Obstacle obstacle) {
+  obstacle_ = obstacle;
+  force_failed_ = false;
+  return false;
+}
+
+std::string EquationsOfMotion::culprit() const {
+  switch (obstacle_) {
+    case Obstacle::none: return {};
+    case Obstacle::plugin: return force_failed_ ? forces_.culprit() : equations_.culprit();
+    case Obstacle::open:
+    case Obstacle::singular: {
+      Eigen::Index row = 0;
+      if (mechanism_->rows == 0) return {};
+      equations_.residual.cwiseAbs().maxCoeff(&row);
+      return mechanism_->equation_names[static_cast<std::size_t>(row)].name;
+    }
+    case Obstacle::massless: return mechanism_->rate_names[loose_].name;
+  }
+  return {};
+}
+
+bool EquationsOfMotion::take_inputs(double time) {
+  time_ = time;
+  if (mechanism_->inputs.empty()) return true;
+  const Input* failed = set_time(*mechanism_, time, inputs_);
+  if (failed == nullptr) return true;
+  equations_.blame(*failed);
+  return fail(Obstacle::plugin);
+}
+
+/// The values of the closure's rows where the equations stand.
+void EquationsOfMotion::linearise() {
+  std::fill(values_.begin(), values_.end(), 0.0);
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < mechanism_->relations.size(); ++i) {
+    const Relation& relation = mechanism_->relations[i];
+    equations_.relation_jacobian(i, block_.data());
+    const std::size_t count = relation.rows * (relation.path.size() + relation.coupled.size());
+    for (std::size_t k = 0; k < count; ++k) values_[order_[place++]] += block_[k];
+  }
+}
+
+bool EquationsOfMotion::choose(const Eigen::VectorXd& q, double time) {
+  if (!take_inputs(time)) return false;
+  if (!equations_.evaluate(q, time)) return fail(Obstacle::plugin);
+  last_ = q;
+  linearise();
+  std::vector<double> scale;
+  for (const std::uint32_t rate : mechanism_->rate_of_column) scale.push_back(mechanism_->rate_scale[rate]);
+  elimination_.choose(values_, scale, redundant);
+  independent_.clear();
+  for (const std::uint32_t column : elimination_.independent()) {
+    independent_.push_back(mechanism_->rate_of_column[column]);
+  }
+  const auto f = static_cast<Eigen::Index>(independent_.size());
+  transfer_.resize(mechanism_->columns, f);
+  inertial_.resize(mechanism_->nv, f);
+  mass_.resize(f, f);
+  rhs_.resize(f);
+  return true;
+}
+
+void EquationsOfMotion::scatter(const Eigen::VectorXd& columns, Eigen::VectorXd& rates) const {
+  for (std::uint32_t i = 0; i < mechanism_->columns; ++i) rates[mechanism_->rate_of_column[i]] = columns[i];
+}
+
+bool EquationsOfMotion::close(const Chart& chart, double time, Eigen::VectorXd& delta) {
+  if (!take_inputs(time)) return false;
+  for (std::size_t i = 0; i < mechanism_->inputs.size(); ++i) {
+    const Input& input = mechanism_->inputs[i];
+    delta[input.v] = inputs_.input[static_cast<Eigen::Index>(i)] - chart.base()[input.q];
+  }
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0;; ++i) {
+    chart.position(delta, q_);
+    if (!equations_.evaluate(q_, time)) return fail(Obstacle::plugin);
+    if (mechanism_->rows == 0) return true;
+    linearise();
+    conditioning_ = elimination_.factorise(values_);
+    if (!(conditioning_ > 0.0) && elimination_.rank() > 0) return fail(Obstacle::singular);
+    const double error = equations_.error();
+    if (!std::isfinite(error)) return fail(Obstacle::open);
+    if (error <= rounding || (error <= all_but && error > 0.5 * before)) break;
+    if (i == most_iterations || (i > 3 && error > before)) {
+      if (error <= closed_limit) break;
+      return fail(Obstacle::open);
+    }
+    before = error;
+    b_ = -equations_.residual;
+    x_.setZero();
+    elimination_.solve(b_, x_);
+    scatter(x_, step_);
+    chart.rates(delta, step_, step_rates_);
+    // The independent ones stay, also where others of their quaternion move.
+    for (const std::uint32_t rate : independent_) step_rates_[rate] = 0.0;
+    delta += step_rates_;
+  }
+  for (const std::uint32_t k : cut_) q_[k] = last_[k];
+  if (!equations_.cut_coordinates(q_)) return fail(Obstacle::plugin);
+  last_ = q_;
+  return true;
+}
+
+bool EquationsOfMotion::velocities(const Eigen::VectorXd& rates) {
+  x_.setZero();
+  for (std::size_t i = 0; i < independent_.size(); ++i) {
+    x_[mechanism_->column_of_rate[independent_[i]]] = rates[static_cast<Eigen::Index>(i)];
+  }
+  for (std::size_t i = 0; i < mechanism_->inputs.size(); ++i) {
+    x_[mechanism_->column_of_rate[mechanism_->inputs[i].v]] = inputs_.input_rate[static_cast<Eigen::Index>(i)];
+  }
+  if (mechanism_->rows > 0) {
+    if (!equations_.time_rate(b_)) return fail(Obstacle::plugin);
+    b_ = -b_;
+    elimination_.solve(b_, x_);
+  }
+  scatter(x_, v_);
+  if (!equations_.motion(q_, v_, zero_) || !equations_.cut_rates(q_, v_)) return fail(Obstacle::plugin);
+  return true;
+}
+
+double EquationsOfMotion::opening() {
+  if (mechanism_->rows == 0 || !equations_.time_rate(b_)) return 0.0;
+  const RowPattern& pattern = elimination_.pattern();
+  for (std::uint32_t row = 0; row < pattern.rows(); ++row) {
+    for (std::uint32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
+      b_[row] += values_[k] * v_[mechanism_->rate_of_column[pattern.column[k]]];
+    }
+  }
+  return b_.lpNorm<Eigen::Infinity>();
+}
+
+/// Mass in the independent coordinates, and the efforts that their unit accelerations cost.
+void EquationsOfMotion::reduce_mass() {
+  mass_matrix_.evaluate(equations_.kinematics, tree_mass_);
+  elimination_.transfer(transfer_);
+  for (Eigen::Index i = 0; i < mass_.rows(); ++i) {
+    x_ = transfer_.col(i);
+    step_.setZero();
+    scatter(x_, step_);
+    tree_mass_.multiply(step_.data(), efforts_.data());
+    inertial_.col(i) = efforts_;
+    for (Eigen::Index j = 0; j <= i; ++j) mass_(i, j) = mass_(j, i) = along_independent(j, efforts_);
+  }
+}
+
+/// What efforts do along an independent coordinate, all that follow from it included.
+double EquationsOfMotion::along_independent(Eigen::Index i, const Eigen::VectorXd& efforts) const {
+  double sum = 0.0;
+  for (std::uint32_t c = 0; c < mechanism_->columns; ++c)
+    sum += transfer_(c, i) * efforts[mechanism_->rate_of_column[c]];
+  return sum;
+}
+
+/// Solves the reduced equations in place. A pivot that is but rounding of its own entry says that nothing resists.
+bool EquationsOfMotion::solve_reduced() {
+  const Eigen::Index f = mass_.rows();
+  if (f == 0) return true;
+  for (Eigen::Index i = 0; i < f; ++i) step_[i] = mass_(i, i);
+  Eigen::Ref<Eigen::MatrixXd> mass(mass_);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factors(mass);
+  const double rounding_of = 8.0 * static_cast<double>(f) * std::numeric_limits<double>::epsilon();
+  for (Eigen::Index i = 0; i < f; ++i) {
+    // Where the factorisation stopped, the diagonal still holds what was left of the entry.
+    if (mass_(i, i) > 0.0 && mass_(i, i) * mass_(i, i) > rounding_of * step_[i]) continue;
+    loose_ = independent_[static_cast<std::size_t>(i)];
+    return fail(Obstacle::massless);
+  }
+  if (factors.info() != Eigen::Success) {
+    loose_ = independent_.back();
+    return fail(Obstacle::massless);
+  }
+  factors.solveInPlace(rhs_);
+  return true;
+}
+
+/// Without loops and drives all rates are independent, and articulated bodies are quicker.
+bool EquationsOfMotion::tree_accelerations() {
+  if (!articulated_.evaluate(equations_.kinematics, mechanism_->gravity, on_nodes_, force_efforts_, a_)) {
+    loose_ = articulated_.loose();
+    return fail(Obstacle::massless);
+  }
+  return true;
+}
+
+bool EquationsOfMotion::accelerations(const double* states, double* state_rates) {
+  // What remains without acceleration of the independent coordinates.
+  x_.setZero();
+  for (std::size_t i = 0; i < mechanism_->inputs.size(); ++i) {
+    x_[mechanism_->column_of_rate[mechanism_->inputs[i].v]] = inputs_.input_acceleration[static_cast<Eigen::Index>(i)];
+  }
+  if (mechanism_->rows > 0) {
+    if (!equations_.bias(q_, v_, b_)) return fail(Obstacle::plugin);
+    b_ = -b_;
+    elimination_.solve(b_, x_);
+  }
+  a_.setZero();
+  scatter(x_, a_);
+  if (!equations_.motion(q_, v_, a_)) return fail(Obstacle::plugin);
+  std::fill(on_nodes_.begin(), on_nodes_.end(), Wrench{});
+  force_efforts_.setZero();
+  if (!forces_.evaluate(equations_.kinematics, q_.data(), v_.data(), time_, states, on_nodes_, force_efforts_,
+                        state_rates)) {
+    fail(Obstacle::plugin);
+    force_failed_ = true;
+    return false;
+  }
+  if (mechanism_->rows == 0 && mechanism_->inputs.empty()) return tree_accelerations();
+  inverse_dynamics(*mechanism_, inertias_, equations_.kinematics, mechanism_->gravity, on_nodes_, carried_,
+                   residual_efforts_);
+  residual_efforts_ -= force_efforts_;
+  reduce_mass();
+  for (Eigen::Index i = 0; i < rhs_.size(); ++i) rhs_[i] = -along_independent(i, residual_efforts_);
+  if (!solve_reduced()) return false;
+  x_.noalias() = transfer_ * rhs_;
+  step_.setZero();
+  scatter(x_, step_);
+  a_ += step_;
+  residual_efforts_.noalias() += inertial_ * rhs_;
+  if (!a_.allFinite()) return fail(Obstacle::massless);
+  return true;
+}
+
+bool EquationsOfMotion::complete(Eigen::VectorXd& a) {
+  a = a_;
+  if (!equations_.motion(q_, v_, a_) || !equations_.cut_accelerations(q_, v_, a)) return fail(Obstacle::plugin);
+  return true;
+}
+
+bool EquationsOfMotion::power(const double* states, double& power) {
+  power = 0.0;
+  double dissipated = 0.0, external = 0.0;
+  if (!mechanism_->forces.empty()) {
+    if (!forces_.power(equations_.kinematics, q_.data(), v_.data(), time_, states, dissipated, external)) {
+      fail(Obstacle::plugin);
+      force_failed_ = true;
+      return false;
+    }
+  }
+  power = external - dissipated;
+  if (mechanism_->inputs.empty()) return true;
+  // Efforts left in the dependent columns are carried by the loops; those in the driven ones by the drives.
+  for (std::uint32_t c = 0; c < mechanism_->columns; ++c) x_[c] = residual_efforts_[mechanism_->rate_of_column[c]];
+  if (mechanism_->rows > 0) elimination_.solve_transposed(x_, multipliers_);
+  for (std::size_t i = 0; i < mechanism_->inputs.size(); ++i) {
+    const Input& input = mechanism_->inputs[i];
+    power += residual_efforts_[input.v] * v_[input.v];
+  }
+  const RowPattern& pattern = elimination_.pattern();
+  for (std::uint32_t row = 0; row < pattern.rows(); ++row) {
+    if (multipliers_[row] == 0.0) continue;
+    for (std::uint32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
+      if (pattern.column[k] < mechanism_->unknowns) continue;
+      power -= multipliers_[row] * values_[k] * v_[mechanism_->rate_of_column[pattern.column[k]]];
+    }
+  }
+  // What constraints with time of their own deliver.
+  if (mechanism_->explicit_time && equations_.time_rate(b_)) power -= multipliers_.dot(b_);
+  return true;
+}
+
+bool EquationsOfMotion::energy(const double* states, Energy& energy) {
+  if (!equations_.motion(q_, v_, zero_)) return fail(Obstacle::plugin);
+  energy.kinetic = kinetic_energy(inertias_, equations_.kinematics);
+  energy.potential = potential_energy(inertias_, equations_.kinematics, mechanism_->gravity);
+  double stored = 0.0;
+  if (!mechanism_->forces.empty() && !forces_.energy(equations_.kinematics, q_.data(), time_, states, stored)) {
+    fail(Obstacle::plugin);
+    force_failed_ = true;
+    return false;
+  }
+  energy.potential += stored;
+  return true;
+}
+
+}  // namespace koppel

@@ -7,6 +7,7 @@
 #include "base/log.hpp"
 #include "closure/modes.hpp"
 #include "closure/work.hpp"
+#include "dynamics/simulation.hpp"
 #include "koppel/koppel.h"
 #include "mechanism/mechanism.hpp"
 #include "mechanism/state.hpp"
@@ -50,6 +51,12 @@ struct koppel_modes {
   std::shared_ptr<koppel::Registry> registry;
   std::shared_ptr<const koppel::Mechanism> mechanism;
   koppel::Modes modes;
+};
+
+struct koppel_simulation {
+  std::shared_ptr<koppel::Registry> registry;
+  std::shared_ptr<const koppel::Mechanism> mechanism;
+  std::unique_ptr<koppel::Simulation> simulation;
 };
 
 struct koppel_stream {

@@ -22,6 +22,7 @@ using Scene = std::unique_ptr<koppel_scene, Destroy<koppel_scene_destroy>>;
 using Mechanism = std::unique_ptr<koppel_mechanism, Destroy<koppel_mechanism_destroy>>;
 using State = std::unique_ptr<koppel_state, Destroy<koppel_state_destroy>>;
 using Work = std::unique_ptr<koppel_work, Destroy<koppel_work_destroy>>;
+using Simulation = std::unique_ptr<koppel_simulation, Destroy<koppel_simulation_destroy>>;
 using Modes = std::unique_ptr<koppel_modes, Destroy<koppel_modes_destroy>>;
 
 struct CloseStream {

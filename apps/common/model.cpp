@@ -45,7 +45,8 @@ void print_error(const koppel_error& error) {
     std::fprintf(stderr, "error: koppel gave no reason; the system may be short of memory\n");
     return;
   }
-  std::fprintf(stderr, "%s[%s]: %s%s%s\n", word(error.severity), error.code, error.element,
+  const std::string code = error.code[0] ? '[' + std::string(error.code) + ']' : "";  // the system's have none
+  std::fprintf(stderr, "%s%s: %s%s%s\n", word(error.severity), code.c_str(), error.element,
                error.element[0] ? ": " : "", error.message);
   if (error.advice[0]) std::fprintf(stderr, "  help: %s\n", error.advice);
 }

@@ -23,6 +23,7 @@ void add_check(CLI::App& app, const Common& common, Exit& outcome);
 void add_explain(CLI::App& app, const Common& common, Exit& outcome);
 void add_modes(CLI::App& app, const Common& common, Exit& outcome);
 void add_run(CLI::App& app, const Common& common, Exit& outcome);
+void add_simulate(CLI::App& app, const Common& common, Exit& outcome);
 
 /// One finding as it stands in --json.
 inline nlohmann::ordered_json json_of(const koppel_error& error) {

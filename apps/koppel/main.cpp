@@ -24,6 +24,8 @@ constexpr const char* footer =
     "  koppel run fourbar.toml --steps 1000 --csv -    and print the recorded columns\n"
     "  koppel run fourbar.toml --log run.lcm           and keep every state in an LCM log\n"
     "  koppel run fourbar.toml --through               and go on past the limits of its drives\n"
+    "  koppel simulate pendulum.toml                   move by forces and masses; energy balance and drift of the "
+    "loops\n"
     "Exit codes:\n"
     "  0 fine   1 the scene has errors   2 wrong usage   3 the mechanism did not close, or cannot move as asked\n"
     "  4 a file, a stream or the system failed\n"
@@ -48,6 +50,7 @@ int command(int argc, char** argv) {
   add_explain(app, common, outcome);
   add_modes(app, common, outcome);
   add_run(app, common, outcome);
+  add_simulate(app, common, outcome);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

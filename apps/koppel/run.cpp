@@ -10,9 +10,9 @@
 
 #include <unistd.h>
 
-#include "common/table.hpp"
 #include "koppel/at_start.hpp"
 #include "koppel/command.hpp"
+#include "koppel/recorder.hpp"
 #include "koppel/summary.hpp"
 
 namespace koppel::app {
@@ -24,7 +24,7 @@ struct Options {
   std::string scene;
   std::optional<double> duration;
   std::optional<std::uint32_t> steps;
-  std::string csv, lcm, log, name;
+  RecorderOptions record;
   bool through = false;
   std::string branch = "stay";
   bool realtime = false;
@@ -53,7 +53,7 @@ class Run {
         motion_(start(model)),
         steps_(options.steps.value_or(model.settings().steps)),
         duration_(options.duration.value_or(model.settings().duration)),
-        records_(model.sizes().records) {
+        recorder_(model, options.record, columns(options)) {
     way_.branch = options.branch == "take" ? KOPPEL_BRANCH_TAKE : KOPPEL_BRANCH_STAY;
   }
 
@@ -83,11 +83,7 @@ class Run {
       std::fprintf(out, "mobility    %d by rank, %d by count\n", analysis_->mobility_rank, analysis_->mobility_count);
     }
     summary_.print(out);
-    if (streamed_) {
-      std::fprintf(out, "stream      %llu states sent, %llu dropped\n",
-                   static_cast<unsigned long long>(statistics_.sent),
-                   static_cast<unsigned long long>(statistics_.dropped));
-    }
+    recorder_.print(out);
   }
 
   nlohmann::ordered_json to_json() const {
@@ -97,10 +93,7 @@ class Run {
     document["duration"] = duration_;
     add_counts(document, model_.sizes(), analysis_);
     summary_.write(document);
-    if (streamed_) {
-      document["stream"] = {
-          {"published", statistics_.published}, {"sent", statistics_.sent}, {"dropped", statistics_.dropped}};
-    }
+    recorder_.write(document);
     document["diagnostics"] = json_of_findings(model_);
     if (outcome_ != Exit::fine) {
       document["diagnostics"].push_back(json_of(error_));
@@ -121,24 +114,18 @@ class Run {
 
   bool open() {
     if (!motion_.state || !motion_.work) return good(KOPPEL_NO_MEMORY);
-    if (!options_.csv.empty()) {
-      std::vector<std::string> columns = model_.names(KOPPEL_KIND_RECORD, records_);
-      columns.insert(columns.begin(), "time");
-      columns.emplace_back("residual");
-      if (options_.through) columns.emplace_back("drive_time");
-      table_.emplace(options_.csv, columns);
-      if (!table_->good()) return table_failed();
-    }
-    const std::string url = options_.log.empty() ? options_.lcm : "file://" + options_.log + "?mode=w";
-    if (url.empty()) return true;
-    auto stream_options = sized<koppel_stream_options>();
-    stream_options.url = url.c_str();
-    stream_options.name = options_.name.empty() ? nullptr : options_.name.c_str();
-    koppel_stream* stream = nullptr;
-    if (!good(koppel_stream_open(model_.mechanism.get(), &stream_options, &stream, &error_))) return false;
-    stream_.reset(stream);
-    streamed_ = true;
-    return true;
+    return recorded(recorder_.open());
+  }
+
+  /// As good(), of what the recorder did.
+  bool recorded(koppel_status status) {
+    if (status < 0) error_ = recorder_.error();
+    return good(status);
+  }
+
+  static std::vector<std::string> columns(const Options& options) {
+    if (options.through) return {"residual", "drive_time"};
+    return {"residual"};
   }
 
   bool step(std::uint32_t index, double time) {
@@ -191,14 +178,9 @@ class Run {
   }
 
   bool write(double time, const koppel_report& report) {
-    koppel_state* state = motion_.state.get();
-    if (stream_ && !good(koppel_stream_publish(stream_.get(), state, motion_.work.get(), &report))) return false;
-    if (!table_) return true;
-    row_.resize(records_ + 2);
-    row_.front() = time;
-    row_.back() = report.residual;
-    if (options_.through) row_.push_back(koppel_state_time(state));
-    return good(koppel_records(state, motion_.work.get(), row_.data() + 1, records_)) && (table_->row(row_), true);
+    more_ = {report.residual};
+    if (options_.through) more_.push_back(koppel_state_time(motion_.state.get()));
+    return recorded(recorder_.write(motion_, time, &report, more_));
   }
 
   void show_progress(std::uint32_t index) const {
@@ -210,24 +192,8 @@ class Run {
   }
 
   void close() {
-    if (stream_ && koppel_stream_close(stream_.release(), &statistics_) < 0 && outcome_ == Exit::fine) {
-      fail("the stream could not be finished");
-    }
-    if (table_ && !table_->good() && outcome_ == Exit::fine) table_failed();
-  }
-
-  bool table_failed() {
-    fail("cannot write " + options_.csv);
-    return false;
-  }
-
-  /// For what the library does not know of.
-  void fail(const std::string& message) {
-    outcome_ = Exit::system;
-    error_ = sized<koppel_error>();
-    error_.severity = KOPPEL_SEVERITY_ERROR;
-    std::snprintf(error_.message, sizeof error_.message, "%s", message.c_str());
-    std::fprintf(stderr, "error: %s\n", message.c_str());
+    const koppel_status status = recorder_.close();
+    if (outcome_ == Exit::fine) recorded(status);
   }
 
   const Model& model_;
@@ -235,13 +201,9 @@ class Run {
   Motion motion_;
   std::uint32_t steps_;
   double duration_;
-  std::size_t records_;
-  std::optional<Table> table_;
-  std::vector<double> row_;
-  Stream stream_;
-  bool streamed_ = false;
+  Recorder recorder_;
+  std::vector<double> more_;
   bool started_ = false;
-  koppel_stream_statistics statistics_ = sized<koppel_stream_statistics>();
   std::optional<koppel_analysis> analysis_;  ///< at time 0
   std::optional<std::uint32_t> failed_step_;
   nlohmann::ordered_json limit_;  ///< that ended the run
@@ -272,7 +234,7 @@ Exit run(const Options& options, bool verbose) {
   if (options.json) {
     print_json(run.to_json());
   } else if (!options.quiet && run.started()) {
-    run.print(options.csv == "-" ? stderr : stdout);
+    run.print(options.record.csv == "-" ? stderr : stdout);
   }
   return outcome;
 }
@@ -302,24 +264,8 @@ void add_run(CLI::App& app, const Common& common, Exit& outcome) {
   command->add_option("--steps", options->steps, "Number of steps; default: as the scene proposes")
       ->check(step_count)
       ->type_name("N");
-  CLI::Option* csv =
-      command
-          ->add_option("--csv", options->csv,
-                       "Write time, recorded columns (SI units, radians) and residual; - is standard output")
-          ->check(not_empty)
-          ->type_name("FILE");
-  CLI::Option* lcm =
-      command
-          ->add_option("--lcm", options->lcm, "Stream to an LCM provider, for example udpm://239.255.76.67:7667?ttl=0")
-          ->check(not_empty)
-          ->type_name("URL");
-  command->add_option("--log", options->log, "Keep the stream in an LCM log")
-      ->excludes(lcm)
-      ->check(not_empty)
-      ->type_name("FILE");
-  command->add_option("--name", options->name, "Channels are KOPPEL_<NAME>_STATE and so on; default: the scene's name")
-      ->check(not_empty)
-      ->type_name("NAME");
+  CLI::Option* csv = add_recorder_options(
+      *command, options->record, "Write time, recorded columns (SI units, radians) and residual; - is standard output");
   command->add_flag("--through", options->through,
                     "Go on where a drive goes no further: it turns back, and time runs with the length of the way");
   command
@@ -331,7 +277,7 @@ void add_run(CLI::App& app, const Common& common, Exit& outcome) {
   command->add_flag("-q,--quiet", options->quiet, "Print errors only");
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->callback([options, csv, &common, &outcome] {
-    if (options->json && csv->count() > 0 && options->csv == "-") {
+    if (options->json && csv->count() > 0 && options->record.csv == "-") {
       throw CLI::ValidationError("--csv", "standard output cannot take both the table and --json");
     }
     outcome = run(*options, common.verbose);

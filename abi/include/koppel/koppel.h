@@ -396,6 +396,51 @@ KOPPEL_EXPORT koppel_status koppel_modes_id(const koppel_modes* modes, size_t in
  * time and the inputs of the search. */
 KOPPEL_EXPORT koppel_status koppel_modes_take(const koppel_modes* modes, size_t index, koppel_state* state);
 
+/* ------------------------------------------------------------------------------------------------ simulation */
+
+typedef struct koppel_simulation
+    koppel_simulation; /* a motion under forces and drives, with all that it goes on from */
+
+typedef struct koppel_simulation_options {
+  uint32_t struct_size;
+  uint32_t reserved;
+  double
+      tolerance; /* of one step: radians, lengths over the scene's, their rates per second; 0: the scene's, or 1e-8 */
+  double step;   /* [s] fixed steps of the classical Runge-Kutta method; 0: the scene's, or steps by the tolerance */
+  double end;    /* [s] where the last step shall end; 0: the scene's duration after the start */
+} koppel_simulation_options;
+
+/* How it went so far. */
+typedef struct koppel_simulation_summary {
+  uint32_t struct_size;
+  uint32_t freedoms; /* independent coordinates */
+  uint32_t switches; /* how often others were chosen */
+  uint32_t reserved;
+  uint64_t steps;
+  uint64_t rejected;
+  uint64_t evaluations;
+  double energy;         /* [J] kinetic and potential, at the end of the last step */
+  double energy_error;   /* [J] greatest change of the energy that no work explains */
+  double energy_size;    /* [J] what to compare it with: greatest kinetic energy, and range of the potential one */
+  double position_drift; /* greatest closure equation at the end of a step, scaled as koppel_report.residual */
+  double velocity_drift; /* greatest rate [1/s] of one */
+  double start_change;   /* greatest change of a start rate that the loops did not allow [rad/s, lengths per second] */
+} koppel_simulation_summary;
+
+/* From a closed state on: with its rates if it has them, else with those that the scene asks for, as nearly as the
+ * loops allow. options: NULL for defaults. INVALID_ARGUMENT: the state is not closed. NOT_CLOSED: nothing can be
+ * computed at the start. */
+KOPPEL_EXPORT koppel_status koppel_simulation_create(const koppel_state* state,
+                                                     const koppel_simulation_options* options,
+                                                     koppel_simulation** simulation, koppel_error* error);
+KOPPEL_EXPORT void koppel_simulation_destroy(koppel_simulation* simulation);
+/* On to a time not before the last one; the state of the same mechanism comes out there, with velocities and
+ * accelerations. NOT_CLOSED: the integration goes no further; PLUGIN: a plugin failed. The state is untouched then. */
+KOPPEL_EXPORT koppel_status koppel_simulation_advance(koppel_simulation* simulation, double time, koppel_state* state,
+                                                      koppel_error* error);
+KOPPEL_EXPORT koppel_status koppel_simulation_summarise(const koppel_simulation* simulation,
+                                                        koppel_simulation_summary* summary);
+
 /* ------------------------------------------------------------------------------------------------ results */
 
 /* what: KOPPEL_KIND_BODY or KOPPEL_KIND_FRAME. poses: 12 numbers each, in the world, of all `bodies` or all `frames`.

@@ -11,9 +11,9 @@ from program import (FAR, FINE, FOURBAR, LOCKED, NOT_CLOSED, OVERDRIVEN, SCENE, 
 class Usage(ProgramTest):
     def test_help_teaches_by_examples_and_names_the_exit_codes(self):
         text = self.expect(FINE, "koppel", "--help").stdout
-        for word in ("check", "explain", "modes", "run", "Examples:", "Exit codes:"):
+        for word in ("check", "explain", "modes", "run", "simulate", "Examples:", "Exit codes:"):
             self.assertIn(word, text)
-        for command in ("check", "explain", "modes", "run"):
+        for command in ("check", "explain", "modes", "run", "simulate"):
             self.assertIn("Examples:", self.expect(FINE, "koppel", command, "--help").stdout)
 
     def test_version_is_printed(self):

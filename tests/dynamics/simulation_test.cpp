@@ -125,7 +125,8 @@ INSTANTIATE_TEST_SUITE_P(Dynamics, Reference,
                              Digits{"governor", 0.1, "slider.displacement", 0.523836475569575694},
                              // Three uniform rods.
                              Digits{"triple_pendulum", 2.0, "first.angle", -0.51849853707901688048}),
-                         [](const auto& row) { return std::string(row.param.scene) + "_" + std::to_string(row.index);
+                         [](const auto& row) {
+                           return std::string(row.param.scene) + "_" + std::to_string(row.index);
                          });
 
 TEST(Simulation, FreeBodyTurnsAsEulerSays) {

@@ -1,6 +1,7 @@
 #include "closure/walk.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -100,7 +101,8 @@ bool Walker::step_back() {
 std::optional<Stretch> Walker::next() {
   CurvePoint to;
   // Longer steps over what is too near to a singular position, shorter ones where the curve is not clear.
-  for (double longer = 1.0; longer < 4.0; longer *= 1.5) {
+  constexpr std::array stretched = {1.0, 1.5, 2.25, 3.375};
+  for (const double longer : stretched) {
     double step = step_ * longer;
     bool good = curve_.step(here_, step, to);
     while (!good && !curve_.plugin_failed() && step > smallest_step) {

@@ -316,11 +316,14 @@ bool EquationsOfMotion::accelerations(const double* states, double* state_rates)
   reduce_mass();
   for (Eigen::Index i = 0; i < rhs_.size(); ++i) rhs_[i] = -along_independent(i, residual_efforts_);
   if (!solve_reduced()) return false;
-  x_.noalias() = transfer_ * rhs_;
+  x_.setZero();
+  for (Eigen::Index i = 0; i < rhs_.size(); ++i) {
+    x_ += rhs_[i] * transfer_.col(i);
+    residual_efforts_ += rhs_[i] * inertial_.col(i);
+  }
   step_.setZero();
   scatter(x_, step_);
   a_ += step_;
-  residual_efforts_.noalias() += inertial_ * rhs_;
   if (!a_.allFinite()) return fail(Obstacle::massless);
   return true;
 }

@@ -37,7 +37,7 @@ void TreeLayout::add_runs(std::uint32_t p) {
   first_run_.push_back(static_cast<std::uint32_t>(runs_.size()));
   const std::uint32_t before = parent_[p];
   if (before != none) {
-    for (std::uint32_t k = 0; k < run_count_[before]; ++k) runs_.push_back(Run(runs_[first_run_[before] + k]));
+    for (std::uint32_t k = 0; k < run_count_[before]; ++k) runs_.push_back(runs_[first_run_[before] + k]);
   }
   if (before != none && before + 1 == p) {
     ++runs_.back().count;

@@ -3,6 +3,7 @@
 // angle below half a turn.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "standard.hpp"
 
@@ -79,7 +80,7 @@ struct Bushing {
   }
   static void strain_rate(const double* pose, const double* e, const double* twist, double* rate) {
     rate_of_vector(e, twist, 1, rate);
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       rate[3 + i] = pose[3 * i] * twist[3] + pose[3 * i + 1] * twist[4] + pose[3 * i + 2] * twist[5];
     }
   }

@@ -7,6 +7,7 @@
 #include "base/log.hpp"
 #include "closure/modes.hpp"
 #include "closure/work.hpp"
+#include "dynamics/reactions.hpp"
 #include "dynamics/simulation.hpp"
 #include "koppel/koppel.h"
 #include "mechanism/mechanism.hpp"
@@ -45,6 +46,7 @@ struct koppel_state {
 struct koppel_work {
   std::shared_ptr<koppel::Registry> registry;
   koppel::Work work;
+  std::unique_ptr<koppel::Reactions> reactions;  ///< built on first need
 };
 
 struct koppel_modes {

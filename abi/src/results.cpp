@@ -36,6 +36,27 @@ koppel_status each(const koppel_state* state, koppel_work* work, std::int32_t wh
   });
 }
 
+/// What joints and drives bear at the state.
+koppel_status evaluate_loads(const koppel_state* state, koppel_work* work, koppel_error* error) {
+  if (!work->reactions) {
+    auto inertias = koppel::inertias(*state->mechanism);
+    if (!inertias) return koppel::fail(inertias.error(), error);
+    work->reactions = std::make_unique<koppel::Reactions>(state->mechanism, std::move(*inertias));
+  }
+  if (work->reactions->evaluate(state->state)) return KOPPEL_OK;
+  return koppel::fail(
+      koppel::make_error(koppel::Code::plugin_misbehaved, work->reactions->culprit(),
+                         "failed, or gave a number that is not finite", "report it to the author of the plugin"),
+      error);
+}
+
+void write_determined(const koppel::Reactions::Determined& from, std::uint8_t* to) {
+  for (const auto& joint : from.joints) {
+    for (const bool component : joint) *to++ = component ? 1 : 0;
+  }
+  for (const bool effort : from.efforts) *to++ = effort ? 1 : 0;
+}
+
 using RowMajor6 = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
 
 }  // namespace
@@ -94,7 +115,38 @@ koppel_status koppel_records(const koppel_state* state, koppel_work* work, doubl
     if (!koppel::fit(state, work) || values == nullptr) return KOPPEL_INVALID_ARGUMENT;
     if (count != state->mechanism->record_columns.size()) return KOPPEL_INVALID_ARGUMENT;
     if (!koppel::realise(work->work, state->state)) return KOPPEL_PLUGIN;
-    koppel::evaluate_records(*state->mechanism, state->state, work->work.equations.kinematics, values);
+    const koppel::Loads* loads = nullptr;
+    if (state->mechanism->records_loads) {
+      if (const koppel_status status = evaluate_loads(state, work, nullptr); status < 0) return status;
+      loads = &work->reactions->loads();
+    }
+    koppel::evaluate_records(*state->mechanism, state->state, work->work.equations.kinematics, loads, values);
+    return KOPPEL_OK;
+  });
+}
+
+koppel_status koppel_reactions(const koppel_state* state, koppel_work* work, double* wrenches, size_t wrench_count,
+                               double* efforts, size_t effort_count, uint8_t* determined, koppel_error* error) {
+  return koppel::guarded(error, [&]() -> koppel_status {
+    if (!koppel::fit(state, work)) {
+      return koppel::invalid_argument("state or work is NULL, or they belong to different mechanisms", error);
+    }
+    const Mechanism& m = *state->mechanism;
+    if (wrench_count != 6 * m.joints.size() || effort_count != m.nv || (wrenches == nullptr && wrench_count > 0) ||
+        (efforts == nullptr && effort_count > 0)) {
+      return koppel::invalid_argument("there must be room for 6 numbers for each joint, and one for each rate", error);
+    }
+    if (!koppel::is_closed(m, state->state)) {
+      return koppel::invalid_argument("the state is not closed: koppel_close comes first", error);
+    }
+    if (const koppel_status status = evaluate_loads(state, work, error); status < 0) return status;
+    const koppel::Loads& loads = work->reactions->loads();
+    for (const koppel::Wrench& joint : loads.joints) {
+      Eigen::Map<koppel::Vector6>(wrenches, 6) = joint.vector();
+      wrenches += 6;
+    }
+    Eigen::Map<Eigen::VectorXd>(efforts, m.nv) = loads.efforts;
+    if (determined != nullptr) write_determined(work->reactions->determined(), determined);
     return KOPPEL_OK;
   });
 }

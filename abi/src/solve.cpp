@@ -178,7 +178,7 @@ static_assert(static_cast<int>(koppel::SolverUsed::flow) == KOPPEL_SOLVER_FLOW);
 koppel_status koppel_work_create(const koppel_mechanism* mechanism, koppel_work** work) {
   return koppel::guarded(nullptr, [&]() -> koppel_status {
     if (mechanism == nullptr || work == nullptr) return KOPPEL_INVALID_ARGUMENT;
-    *work = new koppel_work{mechanism->registry, koppel::Work(mechanism->mechanism)};
+    *work = new koppel_work{mechanism->registry, koppel::Work(mechanism->mechanism), nullptr};
     return KOPPEL_OK;
   });
 }

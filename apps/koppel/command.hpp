@@ -22,6 +22,7 @@ struct Common {
 void add_check(CLI::App& app, const Common& common, Exit& outcome);
 void add_explain(CLI::App& app, const Common& common, Exit& outcome);
 void add_modes(CLI::App& app, const Common& common, Exit& outcome);
+void add_reactions(CLI::App& app, const Common& common, Exit& outcome);
 void add_run(CLI::App& app, const Common& common, Exit& outcome);
 void add_simulate(CLI::App& app, const Common& common, Exit& outcome);
 

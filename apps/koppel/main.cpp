@@ -26,6 +26,7 @@ constexpr const char* footer =
     "  koppel run fourbar.toml --through               and go on past the limits of its drives\n"
     "  koppel simulate pendulum.toml                   move by forces and masses; energy balance and drift of the "
     "loops\n"
+    "  koppel reactions pendulum.toml --time 0.5        what every joint and drive bears there\n"
     "Exit codes:\n"
     "  0 fine   1 the scene has errors   2 wrong usage   3 the mechanism did not close, or cannot move as asked\n"
     "  4 a file, a stream or the system failed\n"
@@ -49,6 +50,7 @@ int command(int argc, char** argv) {
   add_check(app, common, outcome);
   add_explain(app, common, outcome);
   add_modes(app, common, outcome);
+  add_reactions(app, common, outcome);
   add_run(app, common, outcome);
   add_simulate(app, common, outcome);
   try {

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "koppel/command.hpp"
+#include "koppel/text_table.hpp"
 
 namespace koppel::app {
 namespace {
@@ -227,32 +228,6 @@ std::string cell(const Coordinate& coordinate, double value) {
   std::snprintf(text, sizeof text, is_angle(coordinate) ? "%.4f" : "%.6f",
                 (std::round(value * unit) + 0.0) / (is_angle(coordinate) ? 1e4 : 1e6));
   return text;
-}
-
-/// How many places a text takes on a terminal: its characters, whatever bytes they have.
-std::size_t places(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
-}
-
-void print_table(const std::vector<std::vector<std::string>>& columns) {
-  std::vector<std::size_t> widths;
-  for (const auto& column : columns) {
-    std::size_t width = 0;
-    for (const std::string& text : column) width = std::max(width, places(text));
-    widths.push_back(width);
-  }
-  for (std::size_t row = 0; row < columns.front().size(); ++row) {
-    std::string line;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const std::string& text = columns[i][row];
-      const std::size_t space = widths[i] - places(text);
-      if (i > 0) line.append(space + 2, ' ');
-      line += text;
-      if (i == 0) line.append(space, ' ');
-    }
-    std::puts(line.c_str());
-  }
 }
 
 void print_modes(const Model& model, const std::vector<FoundMode>& modes) {

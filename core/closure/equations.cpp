@@ -198,7 +198,7 @@ Wrench Equations::reaction(std::size_t index, const Eigen::VectorXd& multipliers
     const Eigen::Map<const Vector6> by_twist(local.by_twist.data() + std::size_t{6} * k);
     at_b += multipliers[row] * mechanism.row_scale[row] * by_twist;
   }
-  return transformed(local.b, Wrench{at_b.head<3>(), at_b.tail<3>()});
+  return {local.b.rotation * at_b.head<3>(), local.b.rotation * at_b.tail<3>()};
 }
 
 bool Equations::cut_coordinates(Eigen::VectorXd& q) {

@@ -33,10 +33,11 @@ class Equations {
   /// One relation's rows of it in its own columns, row by row: those of its path, then its coupled ones. Rates are not
   /// scaled here.
   void relation_jacobian(std::size_t relation, double* block) const;
-  /// Frame a of a relation in the world, at the position last evaluated.
+  /// Frames of a relation in the world, at the position last evaluated.
   const Pose& frame_a(std::size_t relation) const { return locals_[relation].a; }
-  /// The wrench on frame b, about the world's origin and in its axes, by multipliers of a relation's scaled rows (all
-  /// rows are given).
+  const Pose& frame_b(std::size_t relation) const { return locals_[relation].b; }
+  /// The wrench on frame b, about its origin and in world axes, by multipliers of a relation's scaled rows (all rows
+  /// are given).
   Wrench reaction(std::size_t relation, const Eigen::VectorXd& multipliers) const;
   /// The greatest scaled residual.
   double error() const { return residual.size() == 0 ? 0.0 : residual.lpNorm<Eigen::Infinity>(); }

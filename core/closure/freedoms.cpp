@@ -8,6 +8,7 @@
 #include <Eigen/SVD>
 
 #include "closure/factorisation.hpp"
+#include "closure/load_paths.hpp"
 #include "closure/loop_kind.hpp"
 #include "closure/newton.hpp"
 #include "spatial/vector.hpp"
@@ -229,26 +230,6 @@ bool find_isolated(Work& work, const State& state, const Spaces& here, Freedoms&
   return true;
 }
 
-/// The wrench that each joint carries in a state of self-stress, about the world's origin.
-std::vector<Wrench> carried(const Work& work, const Eigen::VectorXd& stress) {
-  const Mechanism& mechanism = *work.mechanism;
-  std::vector<Wrench> wrenches(mechanism.joints.size());
-  for (std::size_t i = 0; i < mechanism.relations.size(); ++i) {
-    const Relation& relation = mechanism.relations[i];
-    if (!relation.has_frames) continue;
-    const Wrench wrench = work.equations.reaction(i, stress);
-    std::int64_t last = -1;
-    for (const PathRate& path : relation.path) {
-      const JointId joint = joint_of_rate(mechanism, path.rate);
-      if (last == joint.value) continue;  // once for all rates of a joint, which are neighbours
-      last = joint.value;
-      wrenches[joint.index()] = wrenches[joint.index()] + path.sign * wrench;
-    }
-    if (relation.kind == RelationKind::cut_joint) wrenches[relation.joint.index()] = wrench;
-  }
-  return wrenches;
-}
-
 std::vector<Pose> inlets(const Work& work) {
   const Mechanism& mechanism = *work.mechanism;
   std::vector<Pose> poses(mechanism.joints.size());
@@ -267,13 +248,18 @@ std::vector<Pose> inlets(const Work& work) {
 
 void find_indeterminate(const Work& work, const Spaces& here, Freedoms& freedoms) {
   const Mechanism& mechanism = *work.mechanism;
+  const LoadPaths paths(mechanism);
   const std::vector<Pose> frames = inlets(work);
+  std::vector<Pose> outlets(mechanism.joints.size());
+  paths.outlets(work.equations, outlets);
   std::vector<IndeterminateReaction> reactions(mechanism.joints.size());
   for (Eigen::Index k = 0; k < here.stresses.cols(); ++k) {
     // Multipliers of length one make moments of that size, and forces over the length.
-    const std::vector<Wrench> wrenches = carried(work, here.stresses.col(k));
+    std::vector<Wrench> wrenches(mechanism.joints.size());
+    paths.add(work.equations, here.stresses.col(k), outlets, wrenches);
     for (std::size_t j = 0; j < wrenches.size(); ++j) {
-      const Wrench wrench = transformed(frames[j].inverse(), wrenches[j]);
+      const Pose in_inlet = relative_pose(frames[j], Pose{Matrix3::Identity(), outlets[j].position});
+      const Wrench wrench = transformed(in_inlet, wrenches[j]);
       for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
         reactions[j].moment[a] |= std::abs(wrench.moment[axis]) > negligible;

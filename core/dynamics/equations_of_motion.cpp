@@ -18,48 +18,6 @@ constexpr double rounding = 1e-14;  // scaled residual at which nothing more is 
 constexpr double all_but = 1e-12;   // and below which a step that gains less than half has met rounding
 constexpr int most_iterations = 12;
 
-/// Calls visit(row, column, place in the relation's block) for every entry.
-template <typename Visit>
-void for_each_entry(const Relation& relation, const Visit& visit) {
-  std::size_t place = 0;
-  for (std::uint32_t k = 0; k < relation.rows; ++k) {
-    for (const auto* rates : {&relation.path, &relation.coupled}) {
-      for (const PathRate& rate : *rates) visit(relation.first_row + k, rate.column, place++);
-    }
-  }
-}
-
-RowPattern pattern_of(const Mechanism& mechanism) {
-  std::vector<std::vector<std::uint32_t>> rows(mechanism.rows);
-  for (const Relation& relation : mechanism.relations) {
-    for_each_entry(relation,
-                   [&](std::uint32_t row, std::uint32_t column, std::size_t) { rows[row].push_back(column); });
-  }
-  RowPattern pattern;
-  pattern.columns = mechanism.columns;
-  pattern.first.push_back(0);
-  for (auto& row : rows) {
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
-    pattern.first.push_back(static_cast<std::uint32_t>(pattern.column.size()));
-  }
-  return pattern;
-}
-
-/// Where each entry of each relation's block goes in the pattern, one relation after another.
-std::vector<std::size_t> order_of(const Mechanism& mechanism, const RowPattern& pattern) {
-  std::vector<std::size_t> order;
-  for (const Relation& relation : mechanism.relations) {
-    for_each_entry(relation, [&](std::uint32_t row, std::uint32_t column, std::size_t) {
-      const auto begin = pattern.column.begin() + pattern.first[row];
-      const auto end = pattern.column.begin() + pattern.first[row + 1];
-      order.push_back(static_cast<std::size_t>(std::lower_bound(begin, end, column) - pattern.column.begin()));
-    });
-  }
-  return order;
-}
-
 }  // namespace
 
 EquationsOfMotion::EquationsOfMotion(std::shared_ptr<const Mechanism> m, Inertias inertias)
@@ -71,7 +29,8 @@ EquationsOfMotion::EquationsOfMotion(std::shared_ptr<const Mechanism> m, Inertia
       articulated_(layout_, inertias_),
       equations_(*mechanism_),
       forces_(*mechanism_),
-      elimination_(pattern_of(*mechanism_), mechanism_->unknowns),
+      rows_(*mechanism_),
+      elimination_(rows_.pattern(), mechanism_->unknowns),
       inputs_(*mechanism_),
       q_(mechanism_->nq),
       v_(Eigen::VectorXd::Zero(mechanism_->nv)),
@@ -92,12 +51,6 @@ EquationsOfMotion::EquationsOfMotion(std::shared_ptr<const Mechanism> m, Inertia
     if (loop.kind != RelationKind::cut_joint) continue;
     const Joint& joint = mechanism_->joints[loop.joint.index()];
     for (std::uint32_t k = joint.q; k < joint.q + joint.nq; ++k) cut_.push_back(k);
-  }
-  const RowPattern pattern = pattern_of(*mechanism_);
-  order_ = order_of(*mechanism_, pattern);
-  values_.assign(pattern.column.size(), 0.0);
-  for (const Relation& relation : mechanism_->relations) {
-    block_.resize(std::max(block_.size(), relation.rows * (relation.path.size() + relation.coupled.size())));
   }
 }
 
@@ -132,26 +85,14 @@ bool EquationsOfMotion::take_inputs(double time) {
   return fail(Obstacle::plugin);
 }
 
-/// The values of the closure's rows where the equations stand.
-void EquationsOfMotion::linearise() {
-  std::fill(values_.begin(), values_.end(), 0.0);
-  std::size_t place = 0;
-  for (std::size_t i = 0; i < mechanism_->relations.size(); ++i) {
-    const Relation& relation = mechanism_->relations[i];
-    equations_.relation_jacobian(i, block_.data());
-    const std::size_t count = relation.rows * (relation.path.size() + relation.coupled.size());
-    for (std::size_t k = 0; k < count; ++k) values_[order_[place++]] += block_[k];
-  }
-}
-
 bool EquationsOfMotion::choose(const Eigen::VectorXd& q, double time) {
   if (!take_inputs(time)) return false;
   if (!equations_.evaluate(q, time)) return fail(Obstacle::plugin);
   last_ = q;
-  linearise();
+  rows_.evaluate(equations_);
   std::vector<double> scale;
   for (const std::uint32_t rate : mechanism_->rate_of_column) scale.push_back(mechanism_->rate_scale[rate]);
-  elimination_.choose(values_, scale, redundant);
+  elimination_.choose(rows_.values(), scale, redundant);
   independent_.clear();
   for (const std::uint32_t column : elimination_.independent()) {
     independent_.push_back(mechanism_->rate_of_column[column]);
@@ -179,8 +120,8 @@ bool EquationsOfMotion::close(const Chart& chart, double time, Eigen::VectorXd& 
     chart.position(delta, q_);
     if (!equations_.evaluate(q_, time)) return fail(Obstacle::plugin);
     if (mechanism_->rows == 0) return true;
-    linearise();
-    conditioning_ = elimination_.factorise(values_);
+    rows_.evaluate(equations_);
+    conditioning_ = elimination_.factorise(rows_.values());
     if (!(conditioning_ > 0.0) && elimination_.rank() > 0) return fail(Obstacle::singular);
     const double error = equations_.error();
     if (!std::isfinite(error)) return fail(Obstacle::open);
@@ -225,12 +166,7 @@ bool EquationsOfMotion::velocities(const Eigen::VectorXd& rates) {
 
 double EquationsOfMotion::opening() {
   if (mechanism_->rows == 0 || !equations_.time_rate(b_)) return 0.0;
-  const RowPattern& pattern = elimination_.pattern();
-  for (std::uint32_t row = 0; row < pattern.rows(); ++row) {
-    for (std::uint32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
-      b_[row] += values_[k] * v_[mechanism_->rate_of_column[pattern.column[k]]];
-    }
-  }
+  rows_.add_product(v_, b_);
   return b_.lpNorm<Eigen::Infinity>();
 }
 
@@ -349,18 +285,9 @@ bool EquationsOfMotion::power(const double* states, double& power) {
   // Efforts left in the dependent columns are carried by the loops; those in the driven ones by the drives.
   for (std::uint32_t c = 0; c < mechanism_->columns; ++c) x_[c] = residual_efforts_[mechanism_->rate_of_column[c]];
   if (mechanism_->rows > 0) elimination_.solve_transposed(x_, multipliers_);
-  for (std::size_t i = 0; i < mechanism_->inputs.size(); ++i) {
-    const Input& input = mechanism_->inputs[i];
-    power += residual_efforts_[input.v] * v_[input.v];
-  }
-  const RowPattern& pattern = elimination_.pattern();
-  for (std::uint32_t row = 0; row < pattern.rows(); ++row) {
-    if (multipliers_[row] == 0.0) continue;
-    for (std::uint32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
-      if (pattern.column[k] < mechanism_->unknowns) continue;
-      power -= multipliers_[row] * values_[k] * v_[mechanism_->rate_of_column[pattern.column[k]]];
-    }
-  }
+  efforts_ = residual_efforts_;
+  rows_.subtract_transposed(multipliers_, efforts_);
+  for (const Input& input : mechanism_->inputs) power += efforts_[input.v] * v_[input.v];
   // What constraints with time of their own deliver.
   if (mechanism_->explicit_time && equations_.time_rate(b_)) power -= multipliers_.dot(b_);
   return true;

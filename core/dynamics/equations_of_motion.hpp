@@ -9,6 +9,7 @@
 
 #include "closure/equations.hpp"
 #include "dynamics/chart.hpp"
+#include "dynamics/closure_rows.hpp"
 #include "dynamics/elimination.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/forward_dynamics.hpp"
@@ -79,7 +80,6 @@ class EquationsOfMotion {
  private:
   bool fail(Obstacle obstacle);
   bool take_inputs(double time);
-  void linearise();
   void scatter(const Eigen::VectorXd& columns, Eigen::VectorXd& rates) const;
   void reduce_mass();
   bool solve_reduced();
@@ -94,12 +94,10 @@ class EquationsOfMotion {
   ArticulatedBodies articulated_;
   Equations equations_;
   Forces forces_;
+  ClosureRows rows_;
   Elimination elimination_;
   State inputs_;  ///< only its inputs count
   std::vector<std::uint32_t> independent_;
-  std::vector<double> values_;  ///< of the rows' pattern
-  std::vector<std::size_t> order_;
-  std::vector<double> block_;
   double time_ = 0.0, conditioning_ = 1.0;
   Obstacle obstacle_ = Obstacle::none;
   bool force_failed_ = false;

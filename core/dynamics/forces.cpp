@@ -43,21 +43,6 @@ bool Forces::failed(const Force& force) {
   return false;
 }
 
-bool Forces::initial_states(double* states) {
-  for (const Force& force : mechanism_.forces) {
-    const std::size_t count = force.type->states.size();
-    if (count == 0) continue;
-    double* own = states + force.first_state;
-    std::fill_n(own, count, 0.0);
-    if (force.type->calls.initial == nullptr) continue;
-    const void* instance = force.instance.get();
-    if (force.type->calls.initial(1, &instance, to_fill(own, count)) < 0 || !all_finite({own, count})) {
-      return failed(force);
-    }
-  }
-  return true;
-}
-
 koppel_configuration Forces::at(const Kinematics& kinematics, const Force& force, double time, const double* q,
                                 const double* v) {
   koppel_configuration at{};

@@ -18,14 +18,11 @@ namespace koppel {
 /// Scratch of one thread; nothing is allocated after construction. Borrows the mechanism.
 ///
 /// Every function takes the kinematics of q, and except for energy() of v as well (forward_motion(); accelerations do
-/// not count), and the internal states of all forces (Mechanism::internal_states; null if there are none). They return
+/// not count), and the internal states of all forces (State::internal; null if there are none). They return
 /// false if a plugin failed or returned something not finite; culprit() then says which, and results are incomplete.
 class Forces {
  public:
   explicit Forces(const Mechanism& mechanism);
-
-  /// Where the internal states start.
-  bool initial_states(double* states);
 
   /// Adds to `on_nodes` the wrench on each node, in world axes, the moment about the node's origin; to `efforts` (nv)
   /// the efforts on coordinates. Writes the rates of the internal states (null if there are none).

@@ -24,14 +24,14 @@ void MinimalEquation::lay_out() {
   const std::vector<std::uint32_t>& independent = motion_.independent();
   const auto f = static_cast<Eigen::Index>(independent.size());
   states_ = rates_ + f;
-  size_ = states_ + mechanism.internal_states + 1;
+  size_ = states_ + mechanism.internal_start.size() + 1;
   scales_.setConstant(size_, std::numeric_limits<double>::infinity());
   independent_.resize(f);
   for (Eigen::Index i = 0; i < f; ++i) {
     const std::uint32_t rate = independent[static_cast<std::size_t>(i)];
     scales_[rate] = scales_[rates_ + i] = mechanism.rate_scale[rate];
   }
-  scales_.segment(states_, mechanism.internal_states).setOnes();
+  scales_.segment(states_, mechanism.internal_start.size()).setOnes();
   scales_[size_ - 1] = energy_scale_;
 }
 

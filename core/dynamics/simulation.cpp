@@ -12,7 +12,6 @@ Simulation::Simulation(std::shared_ptr<const Mechanism> mechanism, Inertias iner
       options_(options),
       motion_(mechanism, std::move(inertias)),
       equation_(motion_),
-      states_(Eigen::VectorXd::Zero(mechanism->internal_states)),
       a_(mechanism->nv) {}
 
 Result<std::unique_ptr<Simulation>> Simulation::of(std::shared_ptr<const Mechanism> mechanism,
@@ -86,11 +85,10 @@ double Simulation::energy_scale(double kinetic) const {
 
 Result<void> Simulation::start(const State& state) {
   summary_ = {};
-  states_.setZero();
-  if (!motion_.forces().initial_states(states_.data())) return stuck(state.time);
-  if (!equation_.start(state.q, state.v, state.time, states_, y_) || !take_rates(state)) return stuck(state.time);
+  if (!equation_.start(state.q, state.v, state.time, state.internal, y_) || !take_rates(state))
+    return stuck(state.time);
   const Eigen::VectorXd v = motion_.v(), q = motion_.q();
-  if (!equation_.start(q, v, state.time, states_, y_)) return stuck(state.time);
+  if (!equation_.start(q, v, state.time, state.internal, y_)) return stuck(state.time);
   EquationsOfMotion::Energy energy;
   if (!motion_.energy(equation_.states(y_), energy)) return stuck(state.time);
   if (!mechanism_->inputs.empty() || !mechanism_->forces.empty())
@@ -161,6 +159,7 @@ Result<void> Simulation::show(double time, State& state) {
   state.q = motion_.q();
   state.v = motion_.v();
   state.a = a_;
+  state.internal = Eigen::Map<const Eigen::VectorXd>(equation_.states(y_), state.internal.size());
   state.stage = Stage::accelerations;
   state.history.time = time;
   state.history.step = 0.0;

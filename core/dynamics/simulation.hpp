@@ -65,7 +65,7 @@ class Simulation {
   EquationsOfMotion motion_;
   MinimalEquation equation_;
   std::unique_ptr<RungeKutta> method_;
-  Eigen::VectorXd y_, states_, a_;
+  Eigen::VectorXd y_, a_;
   SimulationSummary summary_;
   double shown_ = 0.0;
   double balance_ = 0.0;  ///< energy less work, at the start

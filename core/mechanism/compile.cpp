@@ -1,5 +1,6 @@
 // From a Scene to a Mechanism.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "mechanism/mechanism.hpp"
@@ -27,6 +28,9 @@ class Compiler {
     build_constraint_relations();
     number_rows();
     m().record_columns = record_columns(m());
+    m().records_loads = std::any_of(m().records.begin(), m().records.end(), [](const RecordDescription& record) {
+      return record.subject == RecordSubject::joint_load || record.quantity == Quantity::effort;
+    });
     return std::shared_ptr<const Mechanism>(std::move(mechanism_));
   }
 
@@ -117,11 +121,27 @@ class Compiler {
         force.q.push_back(m().joints[of.joint.index()].q + block.q);
         force.v.push_back(m().joints[of.joint.index()].v + block.v);
       }
-      force.first_state = m().internal_states;
-      m().internal_states += static_cast<std::uint32_t>(force.type->states.size());
+      KOPPEL_CHECK(start_internal_states(force, description.source));
       m().forces.push_back(std::move(force));
     }
     return {};
+  }
+
+  Result<void> start_internal_states(Force& force, const Source& source) {
+    Eigen::VectorXd& start = m().internal_start;
+    const auto before = start.size(), count = static_cast<Eigen::Index>(force.type->states.size());
+    force.first_state = static_cast<std::uint32_t>(before);
+    start.conservativeResize(before + count);
+    start.tail(count).setZero();
+    if (count == 0 || force.type->calls.initial == nullptr) return {};
+    start.tail(count).setConstant(std::nan(""));
+    const void* instance = force.instance.get();
+    if (force.type->calls.initial(1, &instance, start.data() + before) >= 0 && start.tail(count).allFinite()) return {};
+    Error error = make_error(
+        Code::plugin_misbehaved, "force " + force.name,
+        "type " + force.type->name + " (" + force.type->origin + ") gives no finite internal states to start from",
+        "report it to the author of the plugin");
+    return refused(std::move(error), source, "force " + force.name);
   }
 
   /// A body's node is its first half, wherever it may be cut.

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "base/error.hpp"
 #include "base/id.hpp"
 #include "mechanism/face.hpp"
@@ -128,9 +130,10 @@ class Mechanism {
   std::vector<Constraint> constraints;
   std::vector<Input> inputs;
   std::vector<Force> forces;
-  std::uint32_t internal_states = 0;  ///< of all forces
+  Eigen::VectorXd internal_start;  ///< internal states of all forces, where they start
   std::vector<RecordDescription> records;
   std::vector<RecordColumn> record_columns;
+  bool records_loads = false;  ///< some record asks for what joints or drives bear
 
   std::uint32_t nq = 0, nv = 0;
   std::vector<StateBlock> blocks;  ///< of all joints, in file order

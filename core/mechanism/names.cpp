@@ -22,6 +22,8 @@ std::string coordinate_unit(BlockKind kind) {
   return "";
 }
 
+std::string effort_unit(BlockKind kind) { return kind == BlockKind::line ? "N" : "N m"; }
+
 std::string rate_unit(BlockKind kind) { return kind == BlockKind::line ? "m/s" : "rad/s"; }
 
 std::span<const std::string_view> coordinate_suffixes(BlockKind kind) {
@@ -75,6 +77,10 @@ QuantityColumns quantity_columns(const Mechanism& mechanism, const RecordDescrip
     case Quantity::angular_velocity: return {"rad/s", vector_suffixes};
     case Quantity::linear_acceleration: return {"m/s^2", vector_suffixes};
     case Quantity::angular_acceleration: return {"rad/s^2", vector_suffixes};
+    case Quantity::effort:
+      return {effort_unit(mechanism.joints[record.joint.index()].blocks[record.block].kind), suffixes(true)};
+    case Quantity::force: return {"N", vector_suffixes};
+    case Quantity::moment: return {"N m", vector_suffixes};
   }
   return {"", no_suffix};
 }

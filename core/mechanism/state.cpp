@@ -24,6 +24,7 @@ State::State(const Mechanism& mechanism)
     : q(mechanism.nq),
       v(Eigen::VectorXd::Zero(mechanism.nv)),
       a(Eigen::VectorXd::Zero(mechanism.nv)),
+      internal(mechanism.internal_start),
       input(mechanism.inputs.size()),
       input_rate(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mechanism.inputs.size()))),
       input_acceleration(input_rate) {

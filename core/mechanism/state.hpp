@@ -17,9 +17,10 @@ struct State {
   /// Where the scene lets it start: positions, and rates of what no drive sets.
   explicit State(const Mechanism& mechanism);
 
-  Eigen::VectorXd q;  ///< nq: all joints in file order, angles not wrapped
-  Eigen::VectorXd v;  ///< nv
-  Eigen::VectorXd a;  ///< nv
+  Eigen::VectorXd q;         ///< nq: all joints in file order, angles not wrapped
+  Eigen::VectorXd v;         ///< nv
+  Eigen::VectorXd a;         ///< nv
+  Eigen::VectorXd internal;  ///< internal states of the forces
   double time = 0.0;
   Stage stage = Stage::assigned;
 

@@ -16,8 +16,10 @@ constexpr auto of_coordinates = std::to_array<QuantityName>({
     {"value", Quantity::value},
     {"rate", Quantity::rate},
     {"acceleration", Quantity::acceleration},
+    {"effort", Quantity::effort},
 });
-constexpr auto of_joints = std::to_array<QuantityName>({{"cardan", Quantity::cardan}});
+constexpr auto of_joints = std::to_array<QuantityName>({{"force", Quantity::force}, {"moment", Quantity::moment}});
+constexpr auto of_turning_joints = std::to_array<QuantityName>({{"cardan", Quantity::cardan}});
 constexpr auto of_frames = std::to_array<QuantityName>({
     {"position", Quantity::position},
     {"quaternion", Quantity::quaternion},
@@ -87,18 +89,22 @@ void read_subject(Reading& reading, Scope& scope, const TableReader& table, cons
   const JointType* type = joint ? reading.scene.joints[joint->index()].type : nullptr;
   const auto fixed = reading.names.find_fixed(scope.prefix, of.text);
   const bool turning = type != nullptr && has_quaternion(*type);
-  if (turning && offers(of_joints, asked.name)) {
+  if (turning && offers(of_turning_joints, asked.name)) {
     record.subject = RecordSubject::joint_cardan;
     record.joint = *joint;
     record.quantity = Quantity::cardan;
+  } else if (type != nullptr && offers(of_joints, asked.name)) {
+    record.subject = RecordSubject::joint_load;
+    record.joint = *joint;
+    choose(of_joints, asked, report, "a joint", record.quantity);
   } else if (fixed) {
     record.subject = RecordSubject::frame;
     if (const auto frame = read_attachment(reading, scope, table.values(), of, "`of`")) record.frame = *frame;
     choose(of_frames, asked, report, "a frame", record.quantity);
   } else if (type != nullptr) {
     report.error(Code::unknown_quantity, of.place, quote(of.text) + " is a joint; here a coordinate or frame is needed",
-                 turning ? "add quantity = \"cardan\", or name a coordinate: " + coordinates_text(*type)
-                         : "write \"joint.coordinate\": " + coordinates_text(*type));
+                 std::string("add quantity = \"force\", \"moment\"") + (turning ? " or \"cardan\"" : "") +
+                     ", or name a coordinate: " + coordinates_text(*type));
   } else if (joint || reading.names.is_lost(scope.prefix, of.text)) {
     return;  // the joint or frame is faulty, which has been reported
   } else if (means_coordinate(reading, scope.prefix, of.text)) {

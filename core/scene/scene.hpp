@@ -87,10 +87,11 @@ struct DriveDescription {
   Source source;
 };
 
-enum class RecordSubject { coordinate, joint_cardan, frame };
+enum class RecordSubject { coordinate, joint_cardan, joint_load, frame };
 
-/// Quantities of coordinates: value, rate, acceleration. Of joints with a quaternion: cardan. Of frames, in world axes:
-/// position, quaternion, cardan, velocity, angular_velocity, acceleration, angular_acceleration.
+/// Quantities of coordinates: value, rate, acceleration, effort. Of joints: force, moment; with a quaternion: cardan. Of
+/// frames, in world axes: position, quaternion, cardan, velocity, angular_velocity, linear_acceleration,
+/// angular_acceleration.
 enum class Quantity {
   value,
   rate,
@@ -102,6 +103,9 @@ enum class Quantity {
   angular_velocity,
   linear_acceleration,
   angular_acceleration,
+  effort,
+  force,
+  moment,
 };
 
 /// One recorded thing; it makes as many columns as the quantity has components.

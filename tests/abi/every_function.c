@@ -239,6 +239,13 @@ static void moves(koppel_state* state, koppel_work* work, size_t frame, const ko
   CHECK_OK(koppel_poses(state, work, KOPPEL_KIND_FRAME, poses, 12 * (size_t)sizes->frames));
   CHECK_NEAR(poses[12 * frame + 9], 0.000131326, 0.5e-9); /* X-5LINK at +80 mm */
   CHECK_NEAR(poses[12 * frame + 10], -0.749874340, 0.5e-9);
+  double wrenches[6 * MOST], efforts[MOST];
+  uint8_t determined[7 * MOST];
+  const size_t loads = 6 * (size_t)sizes->joints;
+  CHECK_OK(koppel_reactions(state, work, wrenches, loads, efforts, sizes->rates, determined, NULL));
+  for (size_t i = 0; i < loads; ++i) CHECK(wrenches[i] == 0.0 && determined[i] == 1); /* bodies without mass */
+  CHECK(koppel_reactions(state, work, wrenches, loads - 1, efforts, sizes->rates, NULL, NULL) ==
+        KOPPEL_INVALID_ARGUMENT);
   CHECK_OK(koppel_records(state, work, records, sizes->records));
   CHECK_NEAR(records[0], 0.08, 1e-15);
 }

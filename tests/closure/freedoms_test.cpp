@@ -255,7 +255,7 @@ TEST(Reaction, HasThePowerOfItsMultipliers) {
       const Wrench wrench = equations.reaction(i, multipliers);
       for (const PathRate& path : scene.built->relations[i].path) {
         const Column& c = equations.kinematics.columns[path.rate];
-        const Twist twist{c.angular, c.linear - c.angular.cross(c.point)};
+        const Twist twist{c.angular, c.linear + c.angular.cross(equations.frame_b(i).position - c.point)};
         power[path.column] += path.sign * scene.built->rate_scale[path.rate] * koppel::power(wrench, twist);
       }
     }

@@ -18,8 +18,8 @@ struct Acting {
       : mechanism(m),
         kinematics(m),
         forces(m),
-        states(m.internal_states, 0.0),
-        state_rates(m.internal_states, 0.0),
+        states(m.internal_start.begin(), m.internal_start.end()),
+        state_rates(states.size(), 0.0),
         switches(forces.switch_count()) {}
 
   void stand(const Eigen::VectorXd& where) {
@@ -210,10 +210,8 @@ TEST(Forces, HaveInternalStatesOneAfterAnother) {
       std::string(floating) +
       "[[force]]\nname = 'first'\ntype = 'controller'\nof = 'b.angle'\nsetpoint = 1\nintegral = 2\n"
       "[[force]]\nname = 'second'\ntype = 'controller'\nof = 'b.displacement'\nsetpoint = 3\nintegral = 1\n");
-  ASSERT_EQ(built->internal_states, 2u);
+  EXPECT_EQ(State(*built).internal, Eigen::Vector2d(0, 0));
   Acting acting(*built);
-  acting.states = {7, 7};
-  ASSERT_TRUE(acting.forces.initial_states(acting.states.data()));
   EXPECT_EQ(acting.states, (std::vector<double>{0, 0}));
   acting.states = {5, 11};
   acting.stand(State(*built).q);
@@ -264,16 +262,15 @@ void PrintTo(const Misdeed& misdeed, std::ostream* out) { *out << misdeed.file; 
 class BadForce : public testing::TestWithParam<Misdeed> {};
 INSTANTIATE_TEST_SUITE_P(Of, BadForce,
                          testing::Values(Misdeed{"act_fails", "evaluate"}, Misdeed{"act_nan", "evaluate"},
-                                         Misdeed{"act_writes_nothing", "evaluate"}, Misdeed{"initial_nan", "initial"},
-                                         Misdeed{"energy_nan", "energy"}, Misdeed{"energy_fails", "energy"},
-                                         Misdeed{"dissipation_nan", "power"}, Misdeed{"switches_nan", "switches"},
-                                         Misdeed{"good", ""}),
+                                         Misdeed{"act_writes_nothing", "evaluate"}, Misdeed{"energy_nan", "energy"},
+                                         Misdeed{"energy_fails", "energy"}, Misdeed{"dissipation_nan", "power"},
+                                         Misdeed{"switches_nan", "switches"}, Misdeed{"good", ""}),
                          [](const auto& each) { return each.param.file; });
 
 TEST_P(BadForce, IsToldByName) {
   const Built built(bad_force(GetParam().file));
   Acting acting(*built);
-  ASSERT_EQ(built->internal_states, 2u);
+  ASSERT_EQ(acting.states.size(), 2u);
   acting.stand(State(*built).q);
   acting.move(Eigen::VectorXd::Zero(built->nv));
   const auto check = [&](const std::string& what, bool fine) {
@@ -284,11 +281,21 @@ TEST_P(BadForce, IsToldByName) {
   };
   double number = 0.0, other = 0.0;
   const double *q = acting.q.data(), *v = acting.v.data(), *states = acting.states.data();
-  check("initial", acting.forces.initial_states(acting.states.data()));
   check("evaluate", acting.act());
   check("energy", acting.forces.energy(acting.kinematics, q, 0.0, states, number));
   check("power", acting.forces.power(acting.kinematics, q, v, 0.0, states, number, other));
   check("switches", acting.forces.switches(acting.kinematics, q, v, 0.0, states, acting.switches.data()));
+}
+
+TEST(Forces, WithoutFiniteStatesToStartFromStopTheCompiler) {
+  try {
+    const Built built(bad_force("initial_nan"));
+    FAIL() << "compiled";
+  } catch (const std::runtime_error& refused) {
+    const std::string told = refused.what();
+    EXPECT_NE(told.find("force odd"), std::string::npos) << told;
+    EXPECT_NE(told.find("bad.force"), std::string::npos) << told;
+  }
 }
 
 TEST(Forces, OfParametersThatATypeRefusesStopTheCompiler) {

@@ -89,8 +89,8 @@ struct DriveDescription {
 
 enum class RecordSubject { coordinate, joint_cardan, joint_load, frame };
 
-/// Quantities of coordinates: value, rate, acceleration, effort. Of joints: force, moment; with a quaternion: cardan. Of
-/// frames, in world axes: position, quaternion, cardan, velocity, angular_velocity, linear_acceleration,
+/// Quantities of coordinates: value, rate, acceleration, effort. Of joints: force, moment; with a quaternion: cardan.
+/// Of frames, in world axes: position, quaternion, cardan, velocity, angular_velocity, linear_acceleration,
 /// angular_acceleration.
 enum class Quantity {
   value,

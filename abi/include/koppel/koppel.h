@@ -459,9 +459,9 @@ KOPPEL_EXPORT koppel_status koppel_frame_accelerations(const koppel_state* state
 KOPPEL_EXPORT koppel_status koppel_jacobian(const koppel_state* state, koppel_work* work, int32_t what, size_t index,
                                             double* jacobian, double* rate, size_t count);
 /* What joints and drives bear at a closed state, for its v and a and the forces that act: inverse dynamics of trees and
- * loops. wrenches: [moment N m; force N] of each joint, with its drive and the forces on its coordinates, on the body at
- * its outlet (on that at its inlet: the opposite), axes and origin of the outlet frame; 6 numbers each. efforts
- * [N m, N]: one for each rate; what drives deliver, and along rates that nothing drives what is missing to their
+ * loops. wrenches: [moment N m; force N] of each joint, with its drive and the forces on its coordinates, on the body
+ * at its outlet (on that at its inlet: the opposite), axes and origin of the outlet frame; 6 numbers each. efforts [N
+ * m, N]: one for each rate; what drives deliver, and along rates that nothing drives what is missing to their
  * accelerations: zero where these come from the forces. Where redundant joints leave them undetermined, all loads
  * together are the least possible. determined: NULL, or one byte for each of wrench_count + effort_count numbers; 1:
  * the motion determines it. INVALID_ARGUMENT: not closed, or a count is wrong. */

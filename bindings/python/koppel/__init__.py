@@ -8,8 +8,9 @@ from .error import Error, Finding
 from .mechanism import Mechanism
 from .modes import Mode, Modes
 from .run import run
-from .state import Analysis, Freedoms, Report, State
+from .simulation import Simulation, Summary, simulate
+from .state import Analysis, Freedoms, Reactions, Report, State
 from .stream import Statistics, Stream
 
-__all__ = ["Analysis", "Engine", "Error", "Finding", "Freedoms", "Mechanism", "Mode", "Modes", "Report", "Scene", "State",
-           "Statistics", "Stream", "load", "run"]
+__all__ = ["Analysis", "Engine", "Error", "Finding", "Freedoms", "Mechanism", "Mode", "Modes", "Reactions", "Report",
+           "Scene", "Simulation", "State", "Statistics", "Stream", "Summary", "load", "run", "simulate"]

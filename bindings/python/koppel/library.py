@@ -65,10 +65,15 @@ _ARGUMENTS = {
     "koppel_modes_get": (_HANDLE, c.c_size_t, c.POINTER(structs.Mode)),
     "koppel_modes_id": (_HANDLE, c.c_size_t, *_TEXT),
     "koppel_modes_take": (_HANDLE, c.c_size_t, _HANDLE),
+    "koppel_simulation_create": (_HANDLE, c.POINTER(structs.SimulationOptions), _OUT, _ERROR),
+    "koppel_simulation_destroy": (_HANDLE,),
+    "koppel_simulation_advance": (_HANDLE, c.c_double, _HANDLE, _ERROR),
+    "koppel_simulation_summarise": (_HANDLE, c.POINTER(structs.SimulationSummary)),
     "koppel_poses": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
     "koppel_twists": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
     "koppel_frame_accelerations": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
     "koppel_jacobian": (_HANDLE, _HANDLE, c.c_int32, c.c_size_t, _NUMBERS, _NUMBERS, c.c_size_t),
+    "koppel_reactions": (_HANDLE, _HANDLE, _NUMBERS, c.c_size_t, _NUMBERS, c.c_size_t, c.POINTER(c.c_uint8), _ERROR),
     "koppel_records": (_HANDLE, _HANDLE, _NUMBERS, c.c_size_t),
     "koppel_stream_open": (_HANDLE, c.POINTER(structs.StreamOptions), _OUT, _ERROR),
     "koppel_stream_publish": (_HANDLE, _HANDLE, _HANDLE, c.POINTER(structs.Report)),
@@ -79,7 +84,7 @@ _RESULTS = {
     "koppel_library_version": structs.Version, "koppel_diagnostics_count": c.c_size_t, "koppel_state_time": c.c_double,
     "koppel_engine_destroy": None, "koppel_diagnostics_destroy": None, "koppel_scene_destroy": None,
     "koppel_mechanism_destroy": None, "koppel_state_destroy": None, "koppel_work_destroy": None,
-    "koppel_modes_destroy": None,
+    "koppel_modes_destroy": None, "koppel_simulation_destroy": None,
 }
 
 

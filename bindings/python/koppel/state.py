@@ -74,6 +74,19 @@ class Freedoms:
     shaky: bool
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
+class Reactions:
+    """What joints and drives bear. joints: (joints, 6), [moment N m; force N] of each joint, with its drive and the
+    forces on its coordinates, on the body at its outlet, axes and origin of the outlet frame. efforts: (rates,)
+    [N m, N], what drives deliver, and along rates that nothing drives what is missing to their accelerations. The
+    masks of the same shapes tell what the motion determines; of all else the least is given."""
+
+    joints: numpy.ndarray
+    efforts: numpy.ndarray
+    joints_determined: numpy.ndarray
+    efforts_determined: numpy.ndarray
+
+
 class Work(Handle):
     _destroy = ("koppel_work_destroy",)
 
@@ -205,6 +218,17 @@ class State(Handle):
     def jacobian_rate(self, name, kind="body"):
         """(6, rates): its time derivative at v."""
         return self._jacobian(name, kind)[1]
+
+    def reactions(self):
+        """What joints and drives bear, for v and a as they stand and the forces that act: Reactions. Error: the state
+        is not closed."""
+        sizes = self.mechanism.sizes
+        joints, efforts = numbers(sizes.joints, 6), numbers(sizes.rates)
+        determined = numpy.empty(joints.size + efforts.size, dtype=numpy.uint8)
+        call("koppel_reactions", self.handle, self.work.handle, pointer(joints), joints.size, pointer(efforts),
+             efforts.size, determined.ctypes.data_as(c.POINTER(c.c_uint8)))
+        known = determined != 0
+        return Reactions(joints, efforts, known[:joints.size].reshape(joints.shape), known[joints.size:])
 
     def records(self):
         """(records,): the recorded columns, named mechanism.records."""

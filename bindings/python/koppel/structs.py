@@ -99,6 +99,18 @@ class Mode(Sized):
     _fields_ = [("struct_size", c.c_uint32), ("limit", c.c_int32), ("residual", c.c_double)]
 
 
+class SimulationOptions(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("reserved", c.c_uint32), ("tolerance", c.c_double), ("step", c.c_double),
+                ("end", c.c_double)]
+
+
+class SimulationSummary(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("freedoms", c.c_uint32), ("switches", c.c_uint32),
+                ("reserved", c.c_uint32), ("steps", c.c_uint64), ("rejected", c.c_uint64), ("evaluations", c.c_uint64),
+                ("energy", c.c_double), ("energy_error", c.c_double), ("energy_size", c.c_double),
+                ("position_drift", c.c_double), ("velocity_drift", c.c_double), ("start_change", c.c_double)]
+
+
 class StreamOptions(Sized):
     _fields_ = [("struct_size", c.c_uint32), ("url", c.c_char_p), ("name", c.c_char_p), ("period", c.c_double)]
 

@@ -1,0 +1,78 @@
+"""Motion under masses, forces and drives."""
+
+import ctypes as c
+import dataclasses
+
+import numpy
+
+from . import structs
+from .engine import load
+from .library import Handle, call, call_plain
+from .mechanism import Mechanism
+from .state import State
+
+
+@dataclasses.dataclass(frozen=True)
+class Summary:
+    """How a simulation went so far, and what may be believed of it."""
+
+    freedoms: int  # independent coordinates
+    switches: int  # how often others were chosen
+    steps: int
+    rejected: int
+    evaluations: int
+    energy: float  # [J] kinetic and potential, at the end of the last step
+    energy_error: float  # [J] greatest change of the energy that no work explains
+    energy_size: float  # [J] what to compare it with
+    position_drift: float  # greatest closure equation at the end of a step, scaled as Report.residual
+    velocity_drift: float  # greatest rate of one [1/s]
+    start_change: float  # greatest change of a start rate that the loops did not allow
+
+
+class Simulation(Handle):
+    """A motion from a closed state on: with its rates if it has them, else with those that the scene asks for, as
+    nearly as the loops allow. The state itself stays as it is.
+
+    tolerance: of a step; 0: the scene's, or 1e-8. step [s]: fixed steps of the classical method; 0: the scene's, or
+    steps by the tolerance. end [s]: where the last step shall end; 0: the scene's duration. Error: the state is not
+    closed, or nothing can be computed there.
+    """
+
+    _destroy = ("koppel_simulation_destroy",)
+
+    def __init__(self, state, tolerance=0.0, step=0.0, end=0.0):
+        options = structs.SimulationOptions(tolerance=tolerance, step=step, end=end)
+        out = c.c_void_p()
+        call("koppel_simulation_create", state.handle, options, out)
+        super().__init__(out.value)
+
+    def advance(self, time, state):
+        """On to a time not before the last one; `state` comes out there, with rates and accelerations. Error: the
+        integration goes no further; the state is as before."""
+        call("koppel_simulation_advance", self.handle, time, state.handle)
+
+    @property
+    def summary(self):
+        struct = structs.SimulationSummary()
+        call_plain("koppel_simulation_summarise", self.handle, struct)
+        return Summary(*(getattr(struct, field.name) for field in dataclasses.fields(Summary)))
+
+
+def simulate(scene, times=None, tolerance=0.0, step=0.0):
+    """Lets a mechanism move from its closed position at time 0 through times [s] (None: as the scene proposes).
+
+    scene: a Mechanism, or the path of a scene file. Returns a dict of arrays, all of the length of times: "time" and
+    every recorded column under its name; and the Summary. Error: from the first step that fails.
+    """
+    mechanism = scene if isinstance(scene, Mechanism) else load(scene)
+    if times is None:
+        times = numpy.linspace(0.0, mechanism.duration, mechanism.steps + 1)
+    times = numpy.asarray(times, dtype=numpy.float64)
+    table = numpy.empty((times.size, mechanism.sizes.records))
+    with State(mechanism) as state:
+        state.close()
+        with Simulation(state, tolerance, step, times[-1] if times.size else 0.0) as simulation:
+            for row, time in enumerate(times):
+                simulation.advance(time, state)
+                table[row] = state.records()
+            return dict(zip(mechanism.records, table.T)) | {"time": times}, simulation.summary

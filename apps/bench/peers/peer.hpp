@@ -1,0 +1,96 @@
+// What every shim does: another engine moves a mechanism of koppel bench by one of its own methods and tells where it
+// ended and how long that took. The bench judges the end by its own reference, as koppel's.
+//
+//   koppel_peer_NAME                                  what it can do, as JSON
+//   koppel_peer_NAME PROBLEM END METHOD SETTING       {"seconds": ..., "values": {"pivot.angle": ..., ...}}
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace koppel::peer {
+
+struct Value {
+  std::string name;
+  double value;
+};
+
+struct End {
+  double seconds;  ///< for the motion alone, from the assembled start
+  std::vector<Value> values;
+};
+
+/// A way to integrate, and the values of its one setting, from coarse to fine.
+struct Method {
+  std::string name, setting;
+  std::vector<double> values;
+};
+
+struct Peer {
+  std::string engine;  ///< with its version
+  std::vector<Method> methods;
+  std::vector<std::string> problems;
+  /// Moves the problem to a time [s] once. Throws what it cannot.
+  std::function<End(const std::string& problem, double end, const std::string& method, double setting)> run;
+};
+
+inline void print_list(const char* name, const std::vector<std::string>& words) {
+  std::printf("\"%s\": [", name);
+  for (std::size_t i = 0; i < words.size(); ++i) std::printf("%s\"%s\"", i == 0 ? "" : ", ", words[i].c_str());
+  std::printf("]");
+}
+
+inline void describe(const Peer& peer) {
+  std::printf("{\"engine\": \"%s\", ", peer.engine.c_str());
+  print_list("problems", peer.problems);
+  std::printf(", \"methods\": [");
+  for (const Method& method : peer.methods) {
+    std::printf("%s{\"method\": \"%s\", \"setting\": \"%s\", \"values\": [", &method == peer.methods.data() ? "" : ", ",
+                method.name.c_str(), method.setting.c_str());
+    for (std::size_t i = 0; i < method.values.size(); ++i) std::printf("%s%.17g", i == 0 ? "" : ", ", method.values[i]);
+    std::printf("]}");
+  }
+  std::printf("]}\n");
+}
+
+/// The least time of three runs, and again while they are short, as koppel is timed.
+inline End best(const Peer& peer, char** arguments) {
+  End best{std::numeric_limits<double>::infinity(), {}};
+  double sum = 0.0;
+  for (int i = 0; i < 1000 && (i < 3 || sum < 0.02) && !(i > 0 && sum > 2.0); ++i) {
+    End end = peer.run(arguments[1], std::atof(arguments[2]), arguments[3], std::atof(arguments[4]));
+    sum += end.seconds;
+    if (end.seconds < best.seconds) best = std::move(end);
+  }
+  return best;
+}
+
+inline int main_of(const Peer& peer, int count, char** arguments) {
+  if (count != 5) {
+    describe(peer);
+    return count == 1 ? 0 : 2;
+  }
+  try {
+    const End end = best(peer, arguments);
+    std::printf("{\"seconds\": %.9g, \"values\": {", end.seconds);
+    for (const Value& value : end.values) {
+      if (!std::isfinite(value.value)) throw std::runtime_error("the motion has no finite end");
+      std::printf("%s\"%s\": %.17g", &value == end.values.data() ? "" : ", ", value.name.c_str(), value.value);
+    }
+    std::printf("}}\n");
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace koppel::peer

@@ -7,7 +7,7 @@ export LC_ALL=C.UTF-8
 
 # What the programs need, what the tests need besides, and what the checks of format and lint need besides.
 packages_build="g++ cmake ninja-build ccache libeigen3-dev libceres-dev libspdlog-dev liblcm-dev liblcm-bin
-  libtomlplusplus-dev libcli11-dev libexpected-dev libmuparser-dev nlohmann-json3-dev graphviz"
+  libtomlplusplus-dev libcli11-dev libexpected-dev libmuparser-dev libsundials-dev nlohmann-json3-dev graphviz"
 packages_test="libgtest-dev libgmock-dev libbenchmark-dev python3 python3-numpy python3-mpmath liblcm-java
   libjchart2d-java openjdk-17-jre openjdk-17-jdk-headless xvfb xauth iproute2"
 packages_lint="clang-format clang-tidy"

@@ -28,6 +28,7 @@ koppel_status status_of(Code code) {
     case 7: return code == Code::inputs_inconsistent ? KOPPEL_SINGULAR : KOPPEL_NOT_CLOSED;
     case 8: return code == Code::stream_failed ? KOPPEL_IO : KOPPEL_INVALID_ARGUMENT;
     case 10: return code == Code::simulation_stuck ? KOPPEL_NOT_CLOSED : KOPPEL_SINGULAR;
+    case 11: return code == Code::no_equilibrium ? KOPPEL_NOT_CLOSED : KOPPEL_SINGULAR;
     default: break;
   }
   if (code == Code::library_version) return KOPPEL_VERSION;

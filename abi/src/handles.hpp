@@ -7,6 +7,8 @@
 #include "base/log.hpp"
 #include "closure/modes.hpp"
 #include "closure/work.hpp"
+#include "dynamics/equilibrium.hpp"
+#include "dynamics/linearisation.hpp"
 #include "dynamics/reactions.hpp"
 #include "dynamics/simulation.hpp"
 #include "koppel/koppel.h"
@@ -59,6 +61,18 @@ struct koppel_simulation {
   std::shared_ptr<koppel::Registry> registry;
   std::shared_ptr<const koppel::Mechanism> mechanism;
   std::unique_ptr<koppel::Simulation> simulation;
+};
+
+struct koppel_equilibrium {
+  std::shared_ptr<koppel::Registry> registry;
+  std::shared_ptr<const koppel::Mechanism> mechanism;
+  koppel::Equilibrium equilibrium;
+};
+
+struct koppel_linearisation {
+  std::shared_ptr<koppel::Registry> registry;
+  std::shared_ptr<const koppel::Mechanism> mechanism;
+  koppel::Linearisation linearisation;
 };
 
 struct koppel_stream {

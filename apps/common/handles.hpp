@@ -23,6 +23,8 @@ using Mechanism = std::unique_ptr<koppel_mechanism, Destroy<koppel_mechanism_des
 using State = std::unique_ptr<koppel_state, Destroy<koppel_state_destroy>>;
 using Work = std::unique_ptr<koppel_work, Destroy<koppel_work_destroy>>;
 using Simulation = std::unique_ptr<koppel_simulation, Destroy<koppel_simulation_destroy>>;
+using Equilibrium = std::unique_ptr<koppel_equilibrium, Destroy<koppel_equilibrium_destroy>>;
+using Linearisation = std::unique_ptr<koppel_linearisation, Destroy<koppel_linearisation_destroy>>;
 using Modes = std::unique_ptr<koppel_modes, Destroy<koppel_modes_destroy>>;
 
 struct CloseStream {

@@ -100,13 +100,12 @@ koppel_settings Model::settings() const {
   return settings;
 }
 
-Model load(const std::string& file, bool verbose) {
+namespace {
+
+/// read(engine, diagnostics, scene, error) reads the scene.
+template <typename Read>
+Model load_by(const koppel_engine_options& options, Read&& read) {
   Model model;
-  auto options = sized<koppel_engine_options>();
-  if (verbose) {
-    options.log = print_log;
-    options.log_level = KOPPEL_LOG_DEBUG;
-  }
   const auto failed = [&model](koppel_status status) {
     if (status < 0) model.outcome = exit_of_loading(model.error, status);
     return status < 0;
@@ -121,13 +120,32 @@ Model load(const std::string& file, bool verbose) {
   model.diagnostics.reset(diagnostics);
 
   koppel_scene* scene = nullptr;
-  if (failed(koppel_scene_from_file(engine, file.c_str(), diagnostics, &scene, &model.error))) return model;
+  if (failed(read(engine, diagnostics, &scene, &model.error))) return model;
   model.scene.reset(scene);
 
   koppel_mechanism* mechanism = nullptr;
   if (failed(koppel_mechanism_compile(scene, diagnostics, &mechanism, &model.error))) return model;
   model.mechanism.reset(mechanism);
   return model;
+}
+
+}  // namespace
+
+Model load(const std::string& file, bool verbose) {
+  auto options = sized<koppel_engine_options>();
+  if (verbose) {
+    options.log = print_log;
+    options.log_level = KOPPEL_LOG_DEBUG;
+  }
+  return load_by(options, [&file](auto* engine, auto* diagnostics, auto** scene, auto* error) {
+    return koppel_scene_from_file(engine, file.c_str(), diagnostics, scene, error);
+  });
+}
+
+Model load_text(const std::string& text) {
+  return load_by(sized<koppel_engine_options>(), [&text](auto* engine, auto* diagnostics, auto** scene, auto* error) {
+    return koppel_scene_from_text(engine, text.c_str(), text.size(), nullptr, diagnostics, scene, error);
+  });
 }
 
 Motion start(const Model& model) {

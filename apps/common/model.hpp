@@ -10,7 +10,7 @@
 namespace koppel::app {
 
 /// What a program returns to the shell.
-enum class Exit { fine = 0, scene = 1, usage = 2, not_closed = 3, system = 4 };
+enum class Exit { fine = 0, scene = 1, usage = 2, not_closed = 3, system = 4, worse = 5 };
 
 /// The exit code that goes with a failed call.
 Exit exit_of(koppel_status status);
@@ -40,6 +40,8 @@ struct Model {
 
 /// Reads, checks and compiles a scene. verbose: the library's log goes to standard error.
 Model load(const std::string& file, bool verbose);
+/// The same of a scene that is not in a file; it can refer to none.
+Model load_text(const std::string& text);
 
 /// A state at time 0 and the scratch memory to move it; null if memory is short.
 struct Motion {

@@ -21,4 +21,14 @@ AtStart at_start(const Model& model) {
   return result;
 }
 
+koppel_status close_at(const Motion& motion, double time, koppel_error& error) {
+  if (!motion.state || !motion.work) return KOPPEL_NO_MEMORY;
+  auto report = sized<koppel_report>();
+  koppel_status status = koppel_close(motion.state.get(), motion.work.get(), nullptr, &report, &error);
+  if (status >= 0 && time != 0.0) {
+    status = koppel_move(motion.state.get(), motion.work.get(), time, &report, &error);
+  }
+  return status;
+}
+
 }  // namespace koppel::app

@@ -1,4 +1,4 @@
-// A mechanism at time 0, where check looks at it and where a run begins.
+// A mechanism at time 0, where check looks at it and where a run begins; or at another one.
 #pragma once
 
 #include <optional>
@@ -18,5 +18,8 @@ struct AtStart {
 
 /// Closes a fresh state at time 0, computes its velocities and accelerations, and counts its freedoms.
 AtStart at_start(const Model& model);
+
+/// Closes a fresh state at time 0, and moves it by its drives to another time [s].
+koppel_status close_at(const Motion& motion, double time, koppel_error& error);
 
 }  // namespace koppel::app

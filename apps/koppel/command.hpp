@@ -19,11 +19,14 @@ struct Common {
   bool verbose = false;
 };
 
+void add_bench(CLI::App& app, const Common& common, Exit& outcome);
 void add_check(CLI::App& app, const Common& common, Exit& outcome);
 void add_explain(CLI::App& app, const Common& common, Exit& outcome);
 void add_modes(CLI::App& app, const Common& common, Exit& outcome);
 void add_reactions(CLI::App& app, const Common& common, Exit& outcome);
 void add_run(CLI::App& app, const Common& common, Exit& outcome);
+void add_equilibrium(CLI::App& app, const Common& common, Exit& outcome);
+void add_linearise(CLI::App& app, const Common& common, Exit& outcome);
 void add_simulate(CLI::App& app, const Common& common, Exit& outcome);
 
 /// One finding as it stands in --json.

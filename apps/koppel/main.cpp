@@ -26,10 +26,14 @@ constexpr const char* footer =
     "  koppel run fourbar.toml --through               and go on past the limits of its drives\n"
     "  koppel simulate pendulum.toml                   move by forces and masses; energy balance and drift of the "
     "loops\n"
-    "  koppel reactions pendulum.toml --time 0.5        what every joint and drive bears there\n"
+    "  koppel reactions pendulum.toml --time 0.5       what every joint and drive bears there\n"
+    "  koppel equilibrium fourbar.toml                 where it rests, and whether it stays there\n"
+    "  koppel linearise fourbar.toml                   frequencies, damping and modes about that position\n"
+    "  koppel bench --out results                      speed against error; a page with curves and tables\n"
     "Exit codes:\n"
-    "  0 fine   1 the scene has errors   2 wrong usage   3 the mechanism did not close, or cannot move as asked\n"
-    "  4 a file, a stream or the system failed\n"
+    "  0 fine   1 the scene has errors   2 wrong usage   3 the mechanism did not close, or cannot move or rest as "
+    "asked\n"
+    "  4 a file, a stream or the system failed   5 a bench fails a hard case or is less exact than an older one\n"
     "Results go to standard output, findings and progress to standard error.";
 
 std::string version_text() {
@@ -47,8 +51,11 @@ int command(int argc, char** argv) {
   Common common;
   Exit outcome = Exit::fine;
   app.add_flag("-v,--verbose", common.verbose, "Print the library's log on standard error");
+  add_bench(app, common, outcome);
   add_check(app, common, outcome);
+  add_equilibrium(app, common, outcome);
   add_explain(app, common, outcome);
+  add_linearise(app, common, outcome);
   add_modes(app, common, outcome);
   add_reactions(app, common, outcome);
   add_run(app, common, outcome);

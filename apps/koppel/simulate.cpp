@@ -1,6 +1,6 @@
 // koppel simulate SCENE
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -10,34 +10,26 @@
 
 #include <unistd.h>
 
-#include "koppel/command.hpp"
+#include "koppel/checkpoint.hpp"
+#include "koppel/global_error.hpp"
 #include "koppel/recorder.hpp"
+#include "koppel/simulate_options.hpp"
 
 namespace koppel::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Options {
-  std::string scene;
-  std::optional<double> duration;
-  std::optional<std::uint32_t> steps;
-  double tolerance = 0.0, step = 0.0;
-  RecorderOptions record;
-  bool realtime = false;
-  bool quiet = false;
-  bool json = false;
-};
-
 /// One simulation of one scene.
 class Simulate {
  public:
-  Simulate(const Model& model, const Options& options)
+  Simulate(const Model& model, const SimulateOptions& options)
       : model_(model),
         options_(options),
         motion_(start(model)),
         rows_(options.steps.value_or(model.settings().steps)),
         duration_(options.duration.value_or(model.settings().duration)),
+        next_(options.every),
         recorder_(model, options.record) {}
 
   Exit run() {
@@ -46,10 +38,13 @@ class Simulate {
     const Clock::time_point begin = Clock::now();
     for (std::uint32_t i = 0; i <= rows_; ++i) {
       const double time = i == rows_ ? duration_ : duration_ * i / rows_;
-      if (options_.realtime) std::this_thread::sleep_until(begin + std::chrono::duration<double>(time));
+      if (time <= resumed_at_) continue;
+      if (options_.realtime)
+        std::this_thread::sleep_until(begin + std::chrono::duration<double>(time - std::max(resumed_at_, 0.0)));
       if (!advance(time)) break;
       reached_ = time;
       show_progress(i);
+      if (!keep(time)) break;
     }
     seconds_ = std::chrono::duration<double>(Clock::now() - begin).count();
     if (simulation_) koppel_simulation_summarise(simulation_.get(), &summary_);
@@ -66,8 +61,16 @@ class Simulate {
                  duration_, seconds_);
     std::fprintf(out, "freedoms    %u independent coordinates, chosen anew %u times\n", summary_.freedoms,
                  summary_.switches);
-    std::fprintf(out, "steps       %llu, and %llu rejected; %llu evaluations\n", count(summary_.steps),
-                 count(summary_.rejected), count(summary_.evaluations));
+    std::fprintf(out, "steps       %llu by %s, and %llu rejected; %llu evaluations\n", count(summary_.steps),
+                 integrator().c_str(), count(summary_.rejected), count(summary_.evaluations));
+    if (summary_.stiff != 0) {
+      std::fprintf(out, "stiff       steps were as short as stability wants them: try --integrator cvode\n");
+    }
+    if (summary_.events > 0) std::fprintf(out, "events      %u kinks or jumps of forces\n", summary_.events);
+    if (comparison_) {
+      std::fprintf(out, "error       of coordinates, estimated: %.2g at the end, %.2g at most\n", comparison_->last(),
+                   comparison_->greatest());
+    }
     std::fprintf(out, "energy      %.9g J at the end; unexplained change at most %.2g J%s\n", summary_.energy,
                  summary_.energy_error, size > 0.0 ? part(summary_.energy_error / size).c_str() : "");
     std::fprintf(out, "loops       open by at most %.2g, at rates of at most %.2g 1/s\n", summary_.position_drift,
@@ -87,9 +90,15 @@ class Simulate {
     document["duration"] = duration_;
     document["freedoms"] = summary_.freedoms;
     document["switches"] = summary_.switches;
+    document["integrator"] = integrator();
+    if (options_.resume.empty()) document["formulation"] = options_.formulation.empty() ? "minimal" : options_.formulation;
+    document["tolerance"] = summary_.tolerance;
+    document["step"] = summary_.step;
+    document["stiff"] = summary_.stiff != 0;
     document["steps"] = summary_.steps;
     document["rejected"] = summary_.rejected;
     document["evaluations"] = summary_.evaluations;
+    document["events"] = summary_.events;
     document["seconds"] = seconds_;
     document["energy"] = summary_.energy;
     document["energy_error"] = summary_.energy_error;
@@ -97,6 +106,7 @@ class Simulate {
     document["position_drift"] = summary_.position_drift;
     document["velocity_drift"] = summary_.velocity_drift;
     document["start_change"] = summary_.start_change;
+    if (comparison_) document["global_error"] = {{"greatest", comparison_->greatest()}, {"end", comparison_->last()}};
     document["final"] = {{"coordinates", values(KOPPEL_Q, KOPPEL_KIND_COORDINATE, model_.sizes().coordinates)},
                          {"velocities", values(KOPPEL_V, KOPPEL_KIND_RATE, model_.sizes().rates)},
                          {"accelerations", values(KOPPEL_A, KOPPEL_KIND_RATE, model_.sizes().rates)}};
@@ -118,6 +128,12 @@ class Simulate {
     char text[48];
     std::snprintf(text, sizeof text, ", %.2g of what moves", ratio);
     return text;
+  }
+
+  std::string integrator() const {
+    return text_of([&](char* text, std::size_t size, std::size_t* needed) {
+      return koppel_simulation_integrator(simulation_.get(), text, size, needed);
+    });
   }
 
   nlohmann::ordered_json values(std::int32_t what, std::int32_t kind, std::size_t size) const {
@@ -142,24 +158,43 @@ class Simulate {
     return good(status);
   }
 
-  /// Closes the loops at time 0 and starts from there.
+  /// Closes the loops at time 0 and starts from there; or goes on from where it was saved.
   bool begin() {
+    if (!options_.resume.empty()) {
+      if (!good(read_checkpoint(model_, options_.resume, simulation_, error_))) return false;
+      reached_ = resumed_at_ = koppel_simulation_time(simulation_.get());
+      next_ = reached_ + options_.every;
+      return good(koppel_simulation_advance(simulation_.get(), reached_, motion_.state.get(), &error_));
+    }
     auto report = sized<koppel_report>();
     if (!good(koppel_close(motion_.state.get(), motion_.work.get(), nullptr, &report, &error_))) return false;
     auto how = sized<koppel_simulation_options>();
     how.tolerance = options_.tolerance;
     how.step = options_.step;
     how.end = duration_;
+    how.integrator = options_.integrator.empty() ? nullptr : options_.integrator.c_str();
+    how.formulation = options_.formulation.empty() ? nullptr : options_.formulation.c_str();
     koppel_simulation* simulation = nullptr;
     if (!good(koppel_simulation_create(motion_.state.get(), &how, &simulation, &error_))) return false;
     simulation_.reset(simulation);
-    return true;
+    if (!options_.estimate) return true;
+    comparison_.emplace(model_);
+    return good(comparison_->begin(motion_.state.get(), simulation, how, error_));
   }
 
   bool advance(double time) {
     koppel_state* state = motion_.state.get();
     if (!good(koppel_simulation_advance(simulation_.get(), time, state, &error_))) return false;
-    return recorded(recorder_.write(motion_, time, nullptr));
+    return recorded(recorder_.write(motion_, time, nullptr)) &&
+           (!comparison_ || good(comparison_->compare(state, time, error_)));
+  }
+
+  /// Saves the simulation where it is time, and at the end.
+  bool keep(double time) {
+    if (options_.checkpoint.empty()) return true;
+    const bool due = options_.every > 0.0 && time >= next_;
+    if (due) next_ = time + options_.every;
+    return (!due && time < duration_) || good(write_checkpoint(simulation_.get(), options_.checkpoint, error_));
   }
 
   void show_progress(std::uint32_t row) const {
@@ -171,18 +206,20 @@ class Simulate {
   }
 
   const Model& model_;
-  const Options& options_;
+  const SimulateOptions& options_;
   Motion motion_;
   Simulation simulation_;
+  std::optional<GlobalError> comparison_;
   std::uint32_t rows_;
   double duration_, reached_ = 0.0, seconds_ = 0.0;
+  double resumed_at_ = -1.0, next_;  ///< where it was saved before; where it is to be saved next
   Recorder recorder_;
   koppel_simulation_summary summary_ = sized<koppel_simulation_summary>();
   koppel_error error_ = sized<koppel_error>();
   Exit outcome_ = Exit::fine;
 };
 
-Exit simulate(const Options& options, bool verbose) {
+Exit simulate(const SimulateOptions& options, bool verbose) {
   const Model model = load(options.scene, verbose);
   if (!model.mechanism) {
     if (options.json) {
@@ -203,46 +240,11 @@ Exit simulate(const Options& options, bool verbose) {
   return outcome;
 }
 
-std::string positive(const std::string& text) {
-  double value = 0.0;
-  const bool good = CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value);
-  return good ? "" : "must be a positive number";
-}
-
 }  // namespace
 
 void add_simulate(CLI::App& app, const Common& common, Exit& outcome) {
-  CLI::App* command = app.add_subcommand(
-      "simulate", "Move a scene by its forces, masses and drives; record, stream, tell how exactly and how fast");
-  auto options = std::make_shared<Options>();
-  command->add_option("SCENE", options->scene, "The scene file")->required()->check(not_empty)->type_name("");
-  command->add_option("--duration", options->duration, "How long; default: as the scene proposes")
-      ->check(positive)
-      ->type_name("SECONDS");
-  command->add_option("--steps", options->steps, "How many rows of output; default: as the scene proposes")
-      ->check(CLI::Range(1u, 1000000000u))
-      ->type_name("N");
-  CLI::Option* tolerance =
-      command
-          ->add_option("--tolerance", options->tolerance,
-                       "Error of an integration step that is allowed; default: as the scene says, or 1e-8")
-          ->check(positive)
-          ->type_name("X");
-  command->add_option("--step", options->step, "Integrate in fixed steps instead, by the classical Runge-Kutta method")
-      ->check(positive)
-      ->excludes(tolerance)
-      ->type_name("SECONDS");
-  CLI::Option* csv = add_recorder_options(*command, options->record,
-                                          "Write time and recorded columns (SI units, radians); - is standard output");
-  command->add_flag("--realtime", options->realtime, "Let a second of the motion take a second");
-  command->add_flag("-q,--quiet", options->quiet, "Print errors only");
-  command->add_flag("--json", options->json, "Print the summary as JSON");
-  command->callback([options, csv, &common, &outcome] {
-    if (options->json && csv->count() > 0 && options->record.csv == "-") {
-      throw CLI::ValidationError("--csv", "standard output cannot take both the table and --json");
-    }
-    outcome = simulate(*options, common.verbose);
-  });
+  auto options = std::make_shared<SimulateOptions>();
+  add_simulate_options(app, options, [options, &common, &outcome] { outcome = simulate(*options, common.verbose); });
 }
 
 }  // namespace koppel::app

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/markup.hpp"
+
 namespace koppel::app {
 namespace {
 
@@ -35,20 +37,6 @@ circle.down { fill: #b3541e; } circle.design { fill: #222; } circle.up { fill: #
 }
 </style>
 )";
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
 
 /// 1, 2 or 5 times a power of ten, so that a range has about five ticks.
 double tick_distance(double range) {

@@ -73,7 +73,7 @@ void Elimination::choose(const std::vector<double>& values, const std::vector<do
     const Choice pivot = choose_pivot(rows, done, choosable_, scale, tolerance * greatest);
     if (pivot.column == none) break;
     done[pivot.row] = true;
-    pivots_.push_back({static_cast<std::uint32_t>(pivot.row), pivot.column, 0, 0});
+    pivots_.push_back({static_cast<std::uint32_t>(pivot.row), pivot.column, 0, 0, scale[pivot.column]});
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (done[i]) continue;
       const auto under = rows[i].find(pivot.column);
@@ -145,7 +145,7 @@ std::uint32_t Elimination::upper_end(std::size_t k) const {
 }
 
 double Elimination::factorise(const std::vector<double>& values) {
-  double least = 1.0;
+  double least = 1.0, smallest = std::numeric_limits<double>::infinity(), largest = 0.0;
   for (std::size_t k = 0; k < pivots_.size(); ++k) {
     const Pivot& pivot = pivots_[k];
     const std::uint32_t lower = lower_end(k), upper = upper_end(k);
@@ -167,9 +167,12 @@ double Elimination::factorise(const std::vector<double>& values) {
     for (std::uint32_t i = pivot.upper; i < upper; ++i) greatest = std::max(greatest, std::abs(row_[upper_[i].at]));
     if (!(std::abs(value) > 0.0) || !std::isfinite(greatest)) return 0.0;
     least = std::min(least, std::abs(value) / greatest);
+    smallest = std::min(smallest, std::abs(value) * pivot.scale);
+    largest = std::max(largest, std::abs(value) * pivot.scale);
     inverse_[k] = 1.0 / value;
     for (std::uint32_t i = pivot.upper; i < upper; ++i) upper_[i].value = row_[upper_[i].at] * inverse_[k];
   }
+  margin_ = largest > 0.0 ? smallest / largest : 1.0;
   return least;
 }
 

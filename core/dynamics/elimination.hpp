@@ -39,6 +39,9 @@ class Elimination {
   /// Factorises with the pivots as chosen. Returns the least ratio of a pivot to the greatest entry that stands beside
   /// it, 0 if one vanishes or is not finite: then nothing can be solved.
   double factorise(const std::vector<double>& values);
+  /// How far the rows are from losing rank where they were factorised last: the least pivot beside the greatest, in the
+  /// scales of their columns.
+  double margin() const { return margin_; }
 
   /// x of the dependent columns from J x = b and the other columns' x. b: of all rows.
   void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
@@ -52,6 +55,7 @@ class Elimination {
   struct Pivot {
     std::uint32_t row = 0, column = 0;
     std::uint32_t lower = 0, upper = 0;  ///< first of its entries in the factors; they end where the next one's begin
+    double scale = 1.0;                  ///< of its column
   };
   struct Entry {
     std::uint32_t at = 0;  ///< a pivot's number in the lower factor, a column in the upper
@@ -64,6 +68,7 @@ class Elimination {
   RowPattern pattern_;
   std::uint32_t choosable_ = 0;
   std::vector<Pivot> pivots_;
+  double margin_ = 1.0;
   std::vector<std::uint32_t> dependent_, independent_, left_out_;
   std::vector<Entry> lower_, upper_;      ///< rows of L left of the diagonal; rows of U, R over the pivot
   std::vector<double> inverse_;           ///< of the pivots

@@ -32,6 +32,8 @@ EquationsOfMotion::EquationsOfMotion(std::shared_ptr<const Mechanism> m, Inertia
       rows_(*mechanism_),
       elimination_(rows_.pattern(), mechanism_->unknowns),
       inputs_(*mechanism_),
+      offsets_(Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(mechanism_->inputs.size()))),
+      pushed_(Eigen::VectorXd::Zero(mechanism_->nv)),
       q_(mechanism_->nq),
       v_(Eigen::VectorXd::Zero(mechanism_->nv)),
       a_(v_),
@@ -80,9 +82,18 @@ bool EquationsOfMotion::take_inputs(double time) {
   time_ = time;
   if (mechanism_->inputs.empty()) return true;
   const Input* failed = set_time(*mechanism_, time, inputs_);
-  if (failed == nullptr) return true;
-  equations_.blame(*failed);
-  return fail(Obstacle::plugin);
+  if (failed != nullptr) {
+    equations_.blame(*failed);
+    return fail(Obstacle::plugin);
+  }
+  if (held_) {
+    inputs_.input_rate.setZero();
+    inputs_.input_acceleration.setZero();
+  }
+  inputs_.input += offsets_.row(0).transpose();
+  inputs_.input_rate += offsets_.row(1).transpose();
+  inputs_.input_acceleration += offsets_.row(2).transpose();
+  return true;
 }
 
 bool EquationsOfMotion::choose(const Eigen::VectorXd& q, double time) {
@@ -125,7 +136,8 @@ bool EquationsOfMotion::close(const Chart& chart, double time, Eigen::VectorXd& 
     if (!(conditioning_ > 0.0) && elimination_.rank() > 0) return fail(Obstacle::singular);
     const double error = equations_.error();
     if (!std::isfinite(error)) return fail(Obstacle::open);
-    if (error <= rounding || (error <= all_but && error > 0.5 * before)) break;
+    // What is left open moves the others by it over the pivot: near a singular position only rounding may be left.
+    if (error <= rounding * std::min(1.0, 10.0 * conditioning_) || (error <= all_but && error > 0.5 * before)) break;
     if (i == most_iterations || (i > 3 && error > before)) {
       if (error <= closed_limit) break;
       return fail(Obstacle::open);
@@ -157,6 +169,7 @@ bool EquationsOfMotion::velocities(const Eigen::VectorXd& rates) {
   if (mechanism_->rows > 0) {
     if (!equations_.time_rate(b_)) return fail(Obstacle::plugin);
     b_ = -b_;
+    if (held_) b_.setZero();
     elimination_.solve(b_, x_);
   }
   scatter(x_, v_);
@@ -223,8 +236,39 @@ bool EquationsOfMotion::tree_accelerations() {
   return true;
 }
 
-bool EquationsOfMotion::accelerations(const double* states, double* state_rates) {
-  // What remains without acceleration of the independent coordinates.
+bool EquationsOfMotion::stand(const Chart& chart, double time, const Eigen::VectorXd& delta, const Eigen::VectorXd& v) {
+  if (!take_inputs(time)) return false;
+  chart.position(delta, q_);
+  if (!equations_.evaluate(q_, time)) return fail(Obstacle::plugin);
+  v_ = v;
+  if (mechanism_->rows > 0) {
+    rows_.evaluate(equations_);
+    conditioning_ = elimination_.factorise(rows_.values());
+    if (!(conditioning_ > 0.0) && elimination_.rank() > 0) return fail(Obstacle::singular);
+    for (const std::uint32_t k : cut_) q_[k] = last_[k];
+    if (!equations_.cut_coordinates(q_)) return fail(Obstacle::plugin);
+    last_ = q_;
+  }
+  if (!equations_.motion(q_, v_, zero_) || !equations_.cut_rates(q_, v_)) return fail(Obstacle::plugin);
+  return true;
+}
+
+/// What the right-hand sides gain where something stands open: of the drives in x_, of the rows in b_.
+void EquationsOfMotion::add_pull() {
+  for (std::size_t i = 0; i < mechanism_->inputs.size(); ++i) {
+    const Input& input = mechanism_->inputs[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    x_[mechanism_->column_of_rate[input.v]] -=
+        pull_ * (2.0 * (v_[input.v] - inputs_.input_rate[k]) + pull_ * (q_[input.q] - inputs_.input[k]));
+  }
+  multipliers_.setZero();
+  if (mechanism_->explicit_time && !equations_.time_rate(multipliers_)) return;
+  rows_.add_product(v_, multipliers_);
+  b_ -= pull_ * (2.0 * multipliers_ + pull_ * equations_.residual);
+}
+
+/// Accelerations that remain without any of the independent coordinates, and what acts then.
+bool EquationsOfMotion::leave_unaccelerated(const double* states, double* state_rates) {
   x_.setZero();
   for (std::size_t i = 0; i < mechanism_->inputs.size(); ++i) {
     x_[mechanism_->column_of_rate[mechanism_->inputs[i].v]] = inputs_.input_acceleration[static_cast<Eigen::Index>(i)];
@@ -232,23 +276,48 @@ bool EquationsOfMotion::accelerations(const double* states, double* state_rates)
   if (mechanism_->rows > 0) {
     if (!equations_.bias(q_, v_, b_)) return fail(Obstacle::plugin);
     b_ = -b_;
+    if (held_ && mechanism_->explicit_time) b_.setZero();
+    if (pull_ > 0.0) add_pull();
     elimination_.solve(b_, x_);
   }
   a_.setZero();
   scatter(x_, a_);
   if (!equations_.motion(q_, v_, a_)) return fail(Obstacle::plugin);
   std::fill(on_nodes_.begin(), on_nodes_.end(), Wrench{});
-  force_efforts_.setZero();
+  force_efforts_ = pushed_;
   if (!forces_.evaluate(equations_.kinematics, q_.data(), v_.data(), time_, states, on_nodes_, force_efforts_,
                         state_rates)) {
     fail(Obstacle::plugin);
     force_failed_ = true;
     return false;
   }
-  if (mechanism_->rows == 0 && mechanism_->inputs.empty()) return tree_accelerations();
+  return true;
+}
+
+/// Efforts that the accelerations left would cost, less those that act.
+void EquationsOfMotion::take_inverse_dynamics() {
   inverse_dynamics(*mechanism_, inertias_, equations_.kinematics, mechanism_->gravity, on_nodes_, carried_,
                    residual_efforts_);
   residual_efforts_ -= force_efforts_;
+}
+
+bool EquationsOfMotion::efforts(const double* states, double* state_rates, Eigen::VectorXd& along) {
+  if (!leave_unaccelerated(states, state_rates)) return false;
+  take_inverse_dynamics();
+  elimination_.transfer(transfer_);
+  for (Eigen::Index i = 0; i < along.size(); ++i) along[i] = -along_independent(i, residual_efforts_);
+  return true;
+}
+
+void EquationsOfMotion::mass(Eigen::MatrixXd& mass) {
+  reduce_mass();
+  mass = mass_;
+}
+
+bool EquationsOfMotion::accelerations(const double* states, double* state_rates) {
+  if (!leave_unaccelerated(states, state_rates)) return false;
+  if (mechanism_->rows == 0 && mechanism_->inputs.empty()) return tree_accelerations();
+  take_inverse_dynamics();
   reduce_mass();
   for (Eigen::Index i = 0; i < rhs_.size(); ++i) rhs_[i] = -along_independent(i, residual_efforts_);
   if (!solve_reduced()) return false;
@@ -305,6 +374,18 @@ bool EquationsOfMotion::energy(const double* states, Energy& energy) {
   }
   energy.potential += stored;
   return true;
+}
+
+bool EquationsOfMotion::exchange(Archive& archive) {
+  archive(last_, pull_);
+  return archive.good() && last_.size() == q_.size();
+}
+
+bool EquationsOfMotion::switches(const double* states, double* values) {
+  if (forces_.switches(equations_.kinematics, q_.data(), v_.data(), time_, states, values)) return true;
+  fail(Obstacle::plugin);
+  force_failed_ = true;
+  return false;
 }
 
 }  // namespace koppel

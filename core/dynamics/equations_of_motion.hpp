@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "closure/equations.hpp"
+#include "dynamics/archive.hpp"
 #include "dynamics/chart.hpp"
 #include "dynamics/closure_rows.hpp"
 #include "dynamics/elimination.hpp"
@@ -48,17 +49,44 @@ class EquationsOfMotion {
   bool close(const Chart& chart, double time, Eigen::VectorXd& delta);
   /// Least ratio of a pivot to the entries beside it, where it closed last: near 0 the choice is near its limit.
   double conditioning() const { return conditioning_; }
+  /// And how far the closure equations are from losing rank there, whatever the choice: 1 far, 0 at a singular
+  /// position.
+  double margin() const { return elimination_.margin(); }
   const Eigen::VectorXd& q() const { return q_; }
+  /// From now on drives stand still where they are at the time, and with them all that depends on time; or move again.
+  /// While they are held only a mechanism at rest, or the first order beside that, is right if a constraint depends on
+  /// time.
+  void hold_drives(bool held) { held_ = held; }
+  /// Value, rate and acceleration that are added to those of a drive.
+  void offset_drive(std::size_t input, const Vector3& offset) {
+    offsets_.col(static_cast<Eigen::Index>(input)) = offset;
+  }
+  /// Efforts (nv) beside those of the forces [N m, N]; on joints at which loops are cut they are left out.
+  void push(const Eigen::VectorXd& efforts) { pushed_ = efforts; }
 
   /// All rates from the independent ones (in their order); after close().
   bool velocities(const Eigen::VectorXd& independent_rates);
   const Eigen::VectorXd& v() const { return v_; }
 
+  /// Instead of close() and velocities(): takes position and rates of the tree (v) as they are, whether or not they
+  /// close the loops and fit the drives.
+  bool stand(const Chart& chart, double time, const Eigen::VectorXd& delta, const Eigen::VectorXd& v);
+  /// Baumgarte's stabilisation of what stands so: from now on accelerations() let every closure equation r, and every
+  /// drive's, fade as r'' + 2 pull r' + pull^2 r = 0. pull [1/s]; 0: not at all.
+  void stabilise(double pull) { pull_ = pull; }
+
   /// All accelerations, by the forces that act; after velocities(). states: of the forces, and their rates.
   bool accelerations(const double* states, double* state_rates);
   const Eigen::VectorXd& a() const { return a_; }
+  /// What forces, gravity and the motion of the drives do along each independent coordinate while none of these is
+  /// accelerated [N m, N]; after velocities(). Needs no mass.
+  bool efforts(const double* states, double* state_rates, Eigen::VectorXd& along);
+  /// Mass in the independent coordinates, which follow each other's order; after velocities().
+  void mass(Eigen::MatrixXd& mass);
   /// After accelerations(): all of them, those of the joints at which loops are cut included.
   bool complete(Eigen::VectorXd& a);
+  /// What stands after complete().
+  const Kinematics& kinematics() const { return equations_.kinematics; }
   /// After accelerations(): power [W] that drives and forces without a store deliver, less what stores dissipate.
   bool power(const double* states, double& power);
 
@@ -68,10 +96,16 @@ class EquationsOfMotion {
   };
   bool energy(const double* states, Energy& energy);
 
+  /// After velocities(): the switches of the forces (Forces::switches).
+  bool switches(const double* states, double* values);
+
   /// After velocities(): the greatest scaled rate at which a closure equation opens [1/s].
   double opening();
   /// The greatest scaled closure residual at the position closed last.
   double residual() const { return equations_.error(); }
+
+  /// After choose(): tells where cut joints turn on from. False: what is read does not fit.
+  bool exchange(Archive& archive);
 
   Obstacle obstacle() const { return obstacle_; }
   std::string culprit() const;
@@ -81,6 +115,9 @@ class EquationsOfMotion {
   bool fail(Obstacle obstacle);
   bool take_inputs(double time);
   void scatter(const Eigen::VectorXd& columns, Eigen::VectorXd& rates) const;
+  bool leave_unaccelerated(const double* states, double* state_rates);
+  void add_pull();
+  void take_inverse_dynamics();
   void reduce_mass();
   bool solve_reduced();
   bool tree_accelerations();
@@ -96,11 +133,13 @@ class EquationsOfMotion {
   Forces forces_;
   ClosureRows rows_;
   Elimination elimination_;
-  State inputs_;  ///< only its inputs count
+  State inputs_;              ///< only its inputs count
+  Eigen::Matrix3Xd offsets_;  ///< of the inputs
+  Eigen::VectorXd pushed_;
   std::vector<std::uint32_t> independent_;
-  double time_ = 0.0, conditioning_ = 1.0;
+  double time_ = 0.0, conditioning_ = 1.0, pull_ = 0.0;
   Obstacle obstacle_ = Obstacle::none;
-  bool force_failed_ = false;
+  bool force_failed_ = false, held_ = false;
   std::uint32_t loose_ = 0;  ///< a rate without resistance
 
   std::vector<std::uint32_t> cut_;  ///< angles of cut joints, in q: they turn on from where they were last

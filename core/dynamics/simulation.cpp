@@ -6,12 +6,18 @@
 #include <Eigen/QR>
 
 namespace koppel {
+namespace {
+
+constexpr double runaway = 1e9;  // [rad/s, m/s]: nothing moves so fast but what is integrated in too long steps
+
+}  // namespace
 
 Simulation::Simulation(std::shared_ptr<const Mechanism> mechanism, Inertias inertias, const SimulationOptions& options)
     : mechanism_(mechanism),
       options_(options),
       motion_(mechanism, std::move(inertias)),
-      equation_(motion_),
+      equation_(make_equation(options.formulation, motion_)),
+      watch_(motion_, *equation_),
       a_(mechanism->nv) {}
 
 Result<std::unique_ptr<Simulation>> Simulation::of(std::shared_ptr<const Mechanism> mechanism,
@@ -22,6 +28,11 @@ Result<std::unique_ptr<Simulation>> Simulation::of(std::shared_ptr<const Mechani
 
 Result<void> Simulation::stuck(double time) const {
   const std::string at = " at t = " + std::to_string(time) + " s";
+  // Whatever fails first then: the steps are to blame.
+  if (motion_.v().size() > 0 && !(motion_.v().lpNorm<Eigen::Infinity>() < runaway)) {
+    return tl::make_unexpected(
+        make_error(Code::simulation_stuck, {}, "rates have grown beyond all bounds" + at, remedy()));
+  }
   switch (motion_.obstacle()) {
     case Obstacle::plugin:
       return tl::make_unexpected(make_error(Code::plugin_misbehaved, motion_.culprit(),
@@ -35,11 +46,19 @@ Result<void> Simulation::stuck(double time) const {
     case Obstacle::singular:
     case Obstacle::none: break;
   }
-  return tl::make_unexpected(make_error(
-      Code::simulation_stuck, motion_.culprit(),
-      "no step is small enough to go on" + at +
-          (motion_.obstacle() == Obstacle::singular ? ": the loops are at a singular position" : ""),
-      "look at the motion up to there: a drive at its limit, a singular position, or a force that is too stiff"));
+  return tl::make_unexpected(
+      make_error(Code::simulation_stuck, motion_.culprit(),
+                 "no step is small enough to go on" + at +
+                     (motion_.obstacle() == Obstacle::singular ? ": the loops are at a singular position" : ""),
+                 remedy()));
+}
+
+std::string Simulation::remedy() const {
+  const std::string look = "look at the motion up to there: a drive at its limit, a singular position";
+  if (options_.step > 0.0)
+    return look + ", or forces too stiff for the step: take a smaller one, or the integrator cvode";
+  if (options_.integrator == IntegratorKind::cvode) return look + ", or a force that jumps";
+  return look + ", or a force that is too stiff: for such there is the integrator cvode";
 }
 
 /// The independent rates that come nearest to what is asked for.
@@ -83,22 +102,37 @@ double Simulation::energy_scale(double kinetic) const {
   return size > 0.0 ? size : 1.0;
 }
 
+/// Baumgarte's parameter [1/s]: what stands open fades in a twentieth of the time that the mechanism takes to fall, or to
+/// move as it starts, through its length; with fixed steps h by no more than 1/(2 h), well within what is stable.
+double Simulation::pull() const {
+  double speed = 0.0;
+  for (std::uint32_t v = 0; v < mechanism_->nv; ++v) {
+    speed = std::max(speed, std::abs(motion_.v()[v]) / mechanism_->rate_scale[v]);
+  }
+  const double slowness = std::sqrt(mechanism_->gravity.norm() / (2.0 * mechanism_->length));
+  const double pull = 20.0 * std::max({speed, slowness, 1.0 / std::max(1.0, mechanism_->duration)});
+  return options_.step > 0.0 ? std::min(pull, 0.5 / options_.step) : pull;
+}
+
 Result<void> Simulation::start(const State& state) {
   summary_ = {};
-  if (!equation_.start(state.q, state.v, state.time, state.internal, y_) || !take_rates(state))
+  if (!equation_->start(state.q, state.v, state.time, state.internal, y_) || !take_rates(state))
     return stuck(state.time);
   const Eigen::VectorXd v = motion_.v(), q = motion_.q();
-  if (!equation_.start(q, v, state.time, state.internal, y_)) return stuck(state.time);
+  if (!equation_->start(q, v, state.time, state.internal, y_)) return stuck(state.time);
   EquationsOfMotion::Energy energy;
-  if (!motion_.energy(equation_.states(y_), energy)) return stuck(state.time);
+  if (!motion_.energy(equation_->states(y_), energy)) return stuck(state.time);
   if (!mechanism_->inputs.empty() || !mechanism_->forces.empty())
-    equation_.set_energy_scale(energy_scale(energy.kinetic));
-  method_ = std::make_unique<RungeKutta>(equation_, options_.step > 0.0 ? 0.0 : options_.tolerance, options_.step);
-  if (!method_->start(state.time, y_)) return stuck(state.time);
+    equation_->set_energy_scale(energy_scale(energy.kinetic));
+  if (options_.formulation == Formulation::baumgarte) motion_.stabilise(pull());
+  method_ = make_integrator(options_.integrator, *equation_, options_.tolerance, options_.step);
+  if (!method_->start(state.time, y_) || !watch_.start(y_)) return stuck(state.time);
   summary_.energy = balance_ = energy.kinetic + energy.potential;
   lowest_ = highest_ = energy.potential;
   liveliest_ = energy.kinetic;
   shown_ = state.time;
+  failed_.reset();
+  worn_ = equation_->is_worn();
   return {};
 }
 
@@ -106,50 +140,63 @@ Result<void> Simulation::start(const State& state) {
 bool Simulation::judge() {
   EquationsOfMotion::Energy energy;
   const Eigen::VectorXd& y = method_->y();
-  if (!motion_.energy(equation_.states(y), energy)) return false;
+  if (!motion_.energy(equation_->states(y), energy)) return false;
   summary_.steps = method_->statistics().steps;
   summary_.rejected = method_->statistics().rejected;
   summary_.evaluations = method_->statistics().evaluations;
+  summary_.events = watch_.events();
+  summary_.stiff = method_->statistics().stiff;
   summary_.energy = energy.kinetic + energy.potential;
   lowest_ = std::min(lowest_, energy.potential);
   highest_ = std::max(highest_, energy.potential);
   liveliest_ = std::max(liveliest_, energy.kinetic);
   summary_.energy_size = liveliest_ + highest_ - lowest_;
-  summary_.energy_error = std::max(summary_.energy_error, std::abs(summary_.energy - equation_.work(y) - balance_));
+  summary_.energy_error = std::max(summary_.energy_error, std::abs(summary_.energy - equation_->work(y) - balance_));
   summary_.position_drift = std::max(summary_.position_drift, motion_.residual());
   summary_.velocity_drift = std::max(summary_.velocity_drift, motion_.opening());
+  worn_ = equation_->is_worn();
   return true;
 }
 
 Result<void> Simulation::step(double limit) {
+  if (!watch_.cross(*method_, limit)) return stuck(method_->time());
   const double time = method_->time();
-  if (equation_.is_worn()) {
+  if (worn_) {
     const std::vector<std::uint32_t> before = motion_.independent();
     y_ = method_->y();
-    if (!equation_.place(time, y_) || !equation_.renew(time, y_)) return stuck(time);
+    if (!equation_->place(time, y_) || !equation_->renew(time, y_)) return stuck(time);
     if (motion_.independent() != before) ++summary_.switches;
-    if (!method_->restart(y_)) return stuck(time);
+    if (!method_->restart(time, y_)) return stuck(time);
   }
   if (method_->step(limit) != StepStatus::done) return stuck(time);
+  if (!watch_.look(*method_)) return stuck(method_->time());
   return {};
 }
 
 Result<void> Simulation::advance(double time, State& state) {
+  if (failed_) return tl::make_unexpected(*failed_);
+  auto gone = go_to(time);
+  if (gone) gone = show(time, state);
+  if (!gone) failed_ = gone.error();
+  return gone;
+}
+
+Result<void> Simulation::go_to(double time) {
   // Steps of a fixed length end where something is to be seen; others are read between their ends.
   const double limit = options_.step > 0.0 ? time : std::max(options_.end, time);
   while (method_->time() < time) {
     KOPPEL_CHECK(step(limit));
     if (!judge()) return stuck(method_->time());
     y_ = method_->y();
-    equation_.take_closed(y_);
+    if (!equation_->settle(method_->time(), y_)) return stuck(method_->time());
     method_->settle(y_);
   }
-  return show(time, state);
+  return {};
 }
 
 Result<void> Simulation::show(double time, State& state) {
   method_->interpolate(time, y_);
-  if (!equation_.realise(time, y_) || !motion_.complete(a_)) return stuck(time);
+  if (!equation_->realise(time, y_) || !motion_.complete(a_)) return stuck(time);
   if (const Input* failed = set_time(*mechanism_, time, state)) {
     return tl::make_unexpected(make_error(Code::plugin_misbehaved, "drive " + failed->name,
                                           "its function gave no finite value",
@@ -159,7 +206,7 @@ Result<void> Simulation::show(double time, State& state) {
   state.q = motion_.q();
   state.v = motion_.v();
   state.a = a_;
-  state.internal = Eigen::Map<const Eigen::VectorXd>(equation_.states(y_), state.internal.size());
+  state.internal = Eigen::Map<const Eigen::VectorXd>(equation_->states(y_), state.internal.size());
   state.stage = Stage::accelerations;
   state.history.time = time;
   state.history.step = 0.0;

@@ -102,6 +102,8 @@ class Stream {
       add(number.has_value());
       add(number.value_or(0.0));
     }
+    // Scenes without one keep the hash that they had before there was a choice.
+    if (!simulation.integrator.empty()) add(simulation.integrator);
   }
   void add(const DriveDescription& drive) {
     add(drive.name);

@@ -122,6 +122,7 @@ struct RecordDescription {
 struct SimulationDescription {
   std::optional<double> tolerance;  ///< relative, of one step
   std::optional<double> step;       ///< [s]
+  std::string integrator;           ///< empty: the default one
 };
 
 struct Scene {

@@ -1,7 +1,33 @@
-// [simulation]: how accurate, or in which steps.
+// [simulation]: by which integrator, how accurate, or in which steps.
+#include "scene/integrators.hpp"
 #include "scene/reading.hpp"
 
 namespace koppel {
+namespace {
+
+void read_integrator(TableReader& table, SimulationDescription& simulation) {
+  const Node* node = table.find("integrator");
+  if (node == nullptr) return;
+  const auto name = table.values().text(*node, "`integrator`");
+  if (!name) return;
+  const IntegratorName* integrator = find_integrator(*name);
+  if (integrator == nullptr) {
+    table.report().error(Code::unknown_integrator, node->place, no_such_integrator(*name), integrator_choices(*name));
+    return;
+  }
+  const bool takes_step = integrator->control == StepControl::step;
+  if (takes_step && table.find("step") == nullptr) {
+    table.report().error(Code::missing_key, node->place, "`" + *name + "` takes fixed steps, and there is no `step`",
+                         "give `step`, for example '1 ms'");
+  }
+  if (!takes_step && table.find("step") != nullptr) {
+    table.report().error(Code::conflicting_keys, table.place_of("step"),
+                         "`" + *name + "` adapts its steps and takes no `step`", "give `tolerance` instead");
+  }
+  simulation.integrator = *name;
+}
+
+}  // namespace
 
 void read_simulation(Reading& reading, Scope& scope, Scene& scene) {
   const Node* node = scope.document->root().find("simulation");
@@ -19,6 +45,7 @@ void read_simulation(Reading& reading, Scope& scope, Scene& scene) {
     }
   }
   if (const Node* step = table.find("step")) simulation.step = values.positive(*step, "`step`", "s");
+  read_integrator(table, simulation);
   table.finish();
 }
 

@@ -1,9 +1,11 @@
 """koppel simulate: its summary, its table and log, what it says where it cannot go on."""
 
 import math
+import subprocess
+import time
 import unittest
 
-from program import (FINE, NOT_CLOSED, SCENES, USAGE, ProgramTest, log_channels, read_table)
+from program import (BIN, FINE, NOT_CLOSED, SCENES, SYSTEM, USAGE, ProgramTest, log_channels, read_table)
 
 DYNAMICS = SCENES / "dynamics"
 
@@ -34,7 +36,7 @@ class Simulate(ProgramTest):
     def test_the_summary_has_its_keys(self):
         document = self.json(FINE, "simulate", DYNAMICS / "andrews.toml")
         for key in ("scene", "finished", "time", "duration", "freedoms", "switches", "steps", "rejected", "evaluations",
-                    "seconds", "energy", "energy_error", "energy_size", "position_drift", "velocity_drift",
+                    "events", "integrator", "tolerance", "step", "stiff", "seconds", "energy", "energy_error", "energy_size", "position_drift", "velocity_drift",
                     "start_change", "final", "diagnostics"):
             self.assertIn(key, document)
         self.assertEqual(document["freedoms"], 1)
@@ -51,6 +53,76 @@ class Simulate(ProgramTest):
         coarse, fine = run(1e-5), run(1e-9)
         self.assertLess(coarse[0], fine[0])
         self.assertLess(100 * fine[1], coarse[1])
+
+    def test_integrators_by_name(self):
+        ends = {}
+        for name, how in (("dormand_prince", ("--tolerance", "1e-9")), ("dop853", ("--tolerance", "1e-9")),
+                          ("cvode", ("--tolerance", "1e-9")), ("classical", ("--step", "0.001")),
+                          ("semi_implicit", ("--step", "0.001"))):
+            document = self.json(FINE, "simulate", DYNAMICS / "fourbar_free.toml", "--duration", "1", "--integrator",
+                                 name, *how)
+            self.assertEqual(document["integrator"], name)
+            self.assertIs(document["stiff"], False)
+            ends[name] = document["final"]["coordinates"]["crank.angle"]
+        for name, end in ends.items():
+            self.assertAlmostEqual(end, ends["dop853"], delta=0.05 if name == "semi_implicit" else 1e-5)
+
+    def test_an_unknown_integrator_is_told_the_choices(self):
+        document = self.json(USAGE, "simulate", DYNAMICS / "pendulum.toml", "--integrator", "rk45")
+        self.assertEqual(document["error"]["code"], "E0309")
+        for name in ("dormand_prince", "classical", "dop853", "cvode", "semi_implicit"):
+            self.assertIn(name, document["error"]["advice"])
+
+    def test_formulations_are_chosen_by_name(self):
+        ends = {}
+        for name in ("minimal", "projected", "baumgarte"):
+            document = self.json(FINE, "simulate", DYNAMICS / "fourbar_free.toml", "--duration", "1", "--formulation", name)
+            self.assertEqual(document["formulation"], name)
+            ends[name] = document["final"]["coordinates"]["crank.angle"]
+            self.assertAlmostEqual(ends[name], ends["minimal"], delta=1e-5)
+        document = self.json(USAGE, "simulate", DYNAMICS / "fourbar_free.toml", "--formulation", "maximal")
+        self.assertEqual(document["error"]["code"], "E0310")
+
+    def test_a_scene_names_its_integrator(self):
+        text = (DYNAMICS / "pendulum.toml").read_text() + "\n[simulation]\nintegrator = 'dop853'\n"
+        document = self.json(FINE, "simulate", self.write("dop853.toml", text))
+        self.assertEqual(document["integrator"], "dop853")
+        self.assertEqual(self.json(FINE, "simulate", "dop853.toml", "--step", "0.01")["integrator"], "classical")
+
+    def test_a_run_that_is_killed_goes_on_bit_for_bit(self):
+        for integrator in ("dop853", "cvode"):
+            how = ("simulate", DYNAMICS / "pendulum.toml", "--duration", "1", "--steps", "50", "--checkpoint-every", "0.2")
+            by = ("--integrator", integrator)
+            whole = self.json(FINE, *how, *by, "--checkpoint", "whole.ck")
+            kept = self.folder / f"{integrator}.ck"
+            with subprocess.Popen([BIN / "koppel", *map(str, how), *by, "--quiet", "--realtime", "--checkpoint", kept],
+                                  cwd=self.folder) as run:
+                while not kept.exists() and run.poll() is None:
+                    time.sleep(0.01)
+                run.kill()
+            rest = self.json(FINE, *how, "--resume", kept, "--checkpoint", kept)
+            for key in ("integrator", "final", "steps", "energy_error"):
+                self.assertEqual(rest[key], whole[key])
+
+    def test_a_checkpoint_of_another_scene_is_refused(self):
+        self.expect(FINE, "koppel", "simulate", DYNAMICS / "pendulum.toml", "--checkpoint", "pendulum.ck")
+        document = self.json(USAGE, "simulate", DYNAMICS / "andrews.toml", "--resume", "pendulum.ck")
+        self.assertIn("another scene", document["error"]["message"])
+        self.json(USAGE, "simulate", DYNAMICS / "andrews.toml", "--resume", self.write("no.ck", "nothing"))
+        self.json(SYSTEM, "simulate", DYNAMICS / "andrews.toml", "--resume", "missing.ck")
+
+    def test_the_error_is_estimated_on_request(self):
+        exact = math.asin(-0.275087462576116860)
+        document = self.json(FINE, "simulate", DYNAMICS / "pendulum.toml", "--tolerance", "1e-6", "--estimate")
+        error = abs(document["final"]["coordinates"]["pivot.angle"] - exact)
+        # The finer one has about a tenth of the error, so that the difference is nearly all of it.
+        self.assertGreater(document["global_error"]["end"], 0.5 * error)
+        self.assertLess(document["global_error"]["end"], 2 * error)
+        self.assertGreaterEqual(document["global_error"]["greatest"], document["global_error"]["end"])
+        fixed = self.json(FINE, "simulate", DYNAMICS / "pendulum.toml", "--step", "0.02", "--estimate")
+        error = abs(fixed["final"]["coordinates"]["pivot.angle"] - exact)
+        self.assertAlmostEqual(fixed["global_error"]["end"] / error, 15 / 16, delta=0.1)  # order 4
+        self.assertNotIn("global_error", self.json(FINE, "simulate", DYNAMICS / "pendulum.toml"))
 
     def test_the_table_has_a_row_for_each_step_asked_for(self):
         self.expect(FINE, "koppel", "simulate", DYNAMICS / "pendulum.toml", "--steps", "20", "--duration", "2", "--csv",

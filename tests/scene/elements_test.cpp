@@ -147,6 +147,8 @@ TEST(Simulation, chooses_for_itself_unless_it_is_told) {
       reader.good("schema = 1\n[simulation]\ntolerance = 1e-6\nstep = '2 ms'\n").simulation;
   EXPECT_EQ(told.tolerance, 1e-6);
   EXPECT_EQ(told.step, 0.002);
+  EXPECT_EQ(told.integrator, "");
+  EXPECT_EQ(reader.good("schema = 1\n[simulation]\nintegrator = 'dop853'\n").simulation.integrator, "dop853");
 }
 
 TEST(Drive, is_named_like_its_coordinate) {

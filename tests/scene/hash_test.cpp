@@ -57,6 +57,7 @@ TEST(Hash, sees_what_is_said) {
       {"stiffness = 70", "damping = 70"},
       {"step = 0.125", "step = 0.25"},
       {"step = 0.125", "tolerance = 0.125"},
+      {"step = 0.125", "step = 0.125\nintegrator = 'classical'"},
       {"[[record]]", "[[body]]\nname = 'b'\n[[record]]"},
   };
   for (const auto& [from, to] : changes) {

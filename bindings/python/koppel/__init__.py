@@ -4,7 +4,9 @@ Units are SI, angles radians. A Mechanism never changes and may be used by many 
 """
 
 from .engine import Engine, Scene, load
+from .equilibrium import Equilibrium
 from .error import Error, Finding
+from .linearisation import Eigenmode, Linearisation, Matrix
 from .mechanism import Mechanism
 from .modes import Mode, Modes
 from .run import run
@@ -12,5 +14,6 @@ from .simulation import Simulation, Summary, simulate
 from .state import Analysis, Freedoms, Reactions, Report, State
 from .stream import Statistics, Stream
 
-__all__ = ["Analysis", "Engine", "Error", "Finding", "Freedoms", "Mechanism", "Mode", "Modes", "Reactions", "Report",
-           "Scene", "Simulation", "State", "Statistics", "Stream", "Summary", "load", "run", "simulate"]
+__all__ = ["Analysis", "Eigenmode", "Engine", "Equilibrium", "Error", "Finding", "Freedoms", "Linearisation", "Matrix",
+           "Mechanism", "Mode", "Modes", "Reactions", "Report", "Scene", "Simulation", "State", "Statistics", "Stream",
+           "Summary", "load", "run", "simulate"]

@@ -7,7 +7,7 @@ import numpy
 
 from . import structs
 from .engine import load
-from .library import Handle, call, call_plain
+from .library import Handle, call, call_plain, encoded
 from .mechanism import Mechanism
 from .state import State
 
@@ -27,21 +27,27 @@ class Summary:
     position_drift: float  # greatest closure equation at the end of a step, scaled as Report.residual
     velocity_drift: float  # greatest rate of one [1/s]
     start_change: float  # greatest change of a start rate that the loops did not allow
+    tolerance: float  # of a step, as it is used; 0: steps are fixed
+    step: float  # [s] of fixed steps; 0: by the tolerance
+    stiff: bool  # many steps were as short as stability wants them, not accuracy: "cvode" suits better
+    events: int  # kinks and jumps of forces at which steps were made to end
 
 
 class Simulation(Handle):
     """A motion from a closed state on: with its rates if it has them, else with those that the scene asks for, as
     nearly as the loops allow. The state itself stays as it is.
 
-    tolerance: of a step; 0: the scene's, or 1e-8. step [s]: fixed steps of the classical method; 0: the scene's, or
-    steps by the tolerance. end [s]: where the last step shall end; 0: the scene's duration. Error: the state is not
-    closed, or nothing can be computed there.
+    tolerance: of a step; 0: the scene's, or 1e-8. step [s]: of fixed steps; 0: the scene's, or steps by the tolerance.
+    end [s]: where the last step shall end; 0: the scene's duration. integrator: a name as `koppel simulate --help`
+    lists them; None: the scene's or the default. formulation: likewise; None: "minimal". Error: the state is not closed, there is no such integrator, or
+    nothing can be computed there.
     """
 
     _destroy = ("koppel_simulation_destroy",)
 
-    def __init__(self, state, tolerance=0.0, step=0.0, end=0.0):
-        options = structs.SimulationOptions(tolerance=tolerance, step=step, end=end)
+    def __init__(self, state, tolerance=0.0, step=0.0, end=0.0, integrator=None, formulation=None):
+        options = structs.SimulationOptions(tolerance=tolerance, step=step, end=end, integrator=encoded(integrator),
+                                            formulation=encoded(formulation))
         out = c.c_void_p()
         call("koppel_simulation_create", state.handle, options, out)
         super().__init__(out.value)
@@ -55,10 +61,10 @@ class Simulation(Handle):
     def summary(self):
         struct = structs.SimulationSummary()
         call_plain("koppel_simulation_summarise", self.handle, struct)
-        return Summary(*(getattr(struct, field.name) for field in dataclasses.fields(Summary)))
+        return Summary(*(field.type(getattr(struct, field.name)) for field in dataclasses.fields(Summary)))
 
 
-def simulate(scene, times=None, tolerance=0.0, step=0.0):
+def simulate(scene, times=None, tolerance=0.0, step=0.0, integrator=None):
     """Lets a mechanism move from its closed position at time 0 through times [s] (None: as the scene proposes).
 
     scene: a Mechanism, or the path of a scene file. Returns a dict of arrays, all of the length of times: "time" and
@@ -71,7 +77,7 @@ def simulate(scene, times=None, tolerance=0.0, step=0.0):
     table = numpy.empty((times.size, mechanism.sizes.records))
     with State(mechanism) as state:
         state.close()
-        with Simulation(state, tolerance, step, times[-1] if times.size else 0.0) as simulation:
+        with Simulation(state, tolerance, step, times[-1] if times.size else 0.0, integrator) as simulation:
             for row, time in enumerate(times):
                 simulation.advance(time, state)
                 table[row] = state.records()

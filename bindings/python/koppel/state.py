@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy
 
-from . import modes, structs
+from . import equilibrium, linearisation, modes, structs
 from .library import Handle, call, call_plain, library, numbers, pointer, text
 
 
@@ -197,6 +197,18 @@ class State(Handle):
         unnoticed. restarts: random starts where there is no other way (0: 2000). progress(found, part): called now and
         then with the number found and the part done; False stops the search."""
         return modes.find(self, most, all_twins, restarts, progress)
+
+    def equilibrium(self, drives="held", search="settle", max_iterations=0):
+        """Where the closed mechanism rests: Equilibrium. The state stays as it is. drives: "held", or "moving": they go
+        on with their rates, and only what they do not move rests. search: "settle": where the forces push it to, else
+        any; "nearest": a balance of forces near by, stable or not. max_iterations: 0: 200."""
+        return equilibrium.find(self, drives, search, max_iterations)
+
+    def linearise(self, drives="held", equilibrium=None, efforts=()):
+        """The equations of motion, linear about the closed state: Linearisation. drives: "held": at rest; "moving": with
+        the state's rates. equilibrium: an Equilibrium, to linearise there instead. efforts: names of rates along which
+        efforts are inputs, after value, rate and acceleration of every drive."""
+        return linearisation.make(self, drives, equilibrium, efforts)
 
     def poses(self, kind="body"):
         """(bodies or frames, 3, 4): rotation matrix and, as last column, position in the world [m]."""

@@ -18,6 +18,9 @@ VERDICTS = ("open", "closed", "not found", "retry", "limit")
 SOLVERS = ("none", "newton", "ceres")
 METHODS = ("auto", "newton", "ceres")
 FLOWS = ("text", "dot")
+DRIVES = ("held", "moving")
+SEARCHES = ("settle", "nearest")
+COURSES = ("unsteady", "steady", "resting")
 
 
 class Version(c.Structure):
@@ -101,14 +104,44 @@ class Mode(Sized):
 
 class SimulationOptions(Sized):
     _fields_ = [("struct_size", c.c_uint32), ("reserved", c.c_uint32), ("tolerance", c.c_double), ("step", c.c_double),
-                ("end", c.c_double)]
+                ("end", c.c_double), ("integrator", c.c_char_p),
+                ("formulation", c.c_char_p)]
 
 
 class SimulationSummary(Sized):
     _fields_ = [("struct_size", c.c_uint32), ("freedoms", c.c_uint32), ("switches", c.c_uint32),
                 ("reserved", c.c_uint32), ("steps", c.c_uint64), ("rejected", c.c_uint64), ("evaluations", c.c_uint64),
                 ("energy", c.c_double), ("energy_error", c.c_double), ("energy_size", c.c_double),
-                ("position_drift", c.c_double), ("velocity_drift", c.c_double), ("start_change", c.c_double)]
+                ("position_drift", c.c_double), ("velocity_drift", c.c_double), ("start_change", c.c_double),
+                ("tolerance", c.c_double), ("step", c.c_double), ("stiff", c.c_int32), ("events", c.c_uint32)]
+
+
+class EquilibriumOptions(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("drives", c.c_int32), ("search", c.c_int32), ("max_iterations", c.c_uint32)]
+
+
+class EquilibriumSummary(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("found", c.c_int32), ("freedoms", c.c_uint32), ("iterations", c.c_uint32),
+                ("stable", c.c_uint32), ("unstable", c.c_uint32), ("indifferent", c.c_uint32),
+                ("circulatory", c.c_int32), ("states_held", c.c_int32), ("worst", c.c_uint32),
+                ("moved_most", c.c_uint32), ("reserved", c.c_uint32),
+                *((name, c.c_double) for name in ("residual", "force", "force_scale", "coordinate_error", "energy",
+                                                  "moved", "unrest", "stiffness_error"))]
+
+
+class LinearisationOptions(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("drives", c.c_int32), ("equilibrium", c.c_void_p),
+                ("efforts", c.POINTER(c.c_uint32)), ("effort_count", c.c_size_t)]
+
+
+class LinearisationSummary(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("course", c.c_int32), ("freedoms", c.c_uint32), ("states", c.c_uint32),
+                ("inputs", c.c_uint32), ("outputs", c.c_uint32), ("drift", c.c_double)]
+
+
+class Eigenmode(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("reserved", c.c_uint32), ("real", c.c_double), ("imaginary", c.c_double),
+                ("error", c.c_double)]
 
 
 class StreamOptions(Sized):

@@ -51,7 +51,7 @@ Bearing bearing(const Model& model, double time) {
   }
   result.status = move_to(motion, time, &result.error);
   if (result.status < 0) return result;
-  result.wrenches.resize(6 * model.sizes().joints);
+  result.wrenches.resize(std::size_t{6} * model.sizes().joints);
   result.efforts.resize(model.sizes().rates);
   result.determined.resize(result.wrenches.size() + result.efforts.size());
   result.status =
@@ -70,15 +70,18 @@ std::string cell(double value, bool determined) {
 constexpr std::array<std::size_t, 6> shown = {3, 4, 5, 0, 1, 2};
 constexpr std::array<const char*, 6> headings = {"force x [N]", "y", "z", "moment x [N m]", "y", "z"};
 
-/// Loads beside the greatest that are nothing but rounding.
-std::vector<double> without_rounding(const std::vector<double>& values) {
+double greatest_of(const std::vector<double>& values) {
   double greatest = 0.0;
   for (const double value : values) greatest = std::max(greatest, std::abs(value));
-  std::vector<double> result = values;
-  for (double& value : result) {
+  return greatest;
+}
+
+/// With zeros for what is but rounding beside the greatest load.
+std::vector<double> without_rounding(std::vector<double> values, double greatest) {
+  for (double& value : values) {
     if (std::abs(value) <= 1e-12 * greatest) value = 0.0;
   }
-  return result;
+  return values;
 }
 
 void print(const Model& model, const Options& options, const Bearing& bearing) {
@@ -86,7 +89,8 @@ void print(const Model& model, const Options& options, const Bearing& bearing) {
   std::printf("%s at t = %g s\n\n", model.name(KOPPEL_KIND_SCENE, 0).c_str(), options.time);
   std::vector<std::vector<std::string>> table{{"joint"}};
   for (std::size_t i = 0; i < joints; ++i) table[0].push_back(model.name(KOPPEL_KIND_JOINT, i));
-  const std::vector<double> wrenches = without_rounding(bearing.wrenches);
+  const double greatest = std::max(greatest_of(bearing.wrenches), greatest_of(bearing.efforts));
+  const std::vector<double> wrenches = without_rounding(bearing.wrenches, greatest);
   for (std::size_t k = 0; k < shown.size(); ++k) {
     std::vector<std::string> column{headings[k]};
     for (std::size_t i = 0; i < joints; ++i) {
@@ -98,7 +102,7 @@ void print(const Model& model, const Options& options, const Bearing& bearing) {
   print_table(table);
   const std::vector<std::string> inputs = model.names(KOPPEL_KIND_INPUT, model.sizes().inputs);
   std::vector<std::vector<std::string>> efforts{{"effort"}, {""}, {""}};
-  const std::vector<double> values = without_rounding(bearing.efforts);
+  const std::vector<double> values = without_rounding(bearing.efforts, greatest);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::string name = model.name(KOPPEL_KIND_RATE, i);
     if (values[i] == 0.0 && std::find(inputs.begin(), inputs.end(), name) == inputs.end()) continue;

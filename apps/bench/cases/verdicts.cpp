@@ -58,7 +58,8 @@ Outcome far_starts(const Plan&) {
     worst = std::max(worst, std::min(apart(moved.q("rocker.angle"), bar.rocker_angle(crank, 1)),
                                      apart(moved.q("rocker.angle"), bar.rocker_angle(crank, -1))));
   }
-  return {count(closed, starts), closed == starts ? worst : infinity, exact};
+  if (closed < starts) worst = infinity;
+  return {count(closed, starts), worst, exact};
 }
 
 Outcome far_starts_of_a_platform(const Plan& plan) {
@@ -126,7 +127,8 @@ Outcome all_positions(const Plan& plan, const char* scene, std::uint64_t expecte
     worst = std::max(worst, mode.residual);
   }
   const std::string text = std::to_string(summary.count) + " positions" + (summary.complete != 0 ? ", complete" : "");
-  return {text, summary.count == expected && summary.complete != 0 ? worst : infinity, exact};
+  if (summary.count != expected || summary.complete == 0) worst = infinity;
+  return {text, worst, exact};
 }
 
 Outcome sixteen(const Plan& plan) { return all_positions(plan, "7r", 16); }

@@ -69,4 +69,18 @@ inline void print_json(const nlohmann::ordered_json& document) {
   std::puts(document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
 }
 
+/// Tells why a scene has become no mechanism. success: the key that says no in JSON; null: there is none.
+inline Exit refused(const Model& model, bool json, const char* success) {
+  if (json) {
+    nlohmann::ordered_json document;
+    if (success != nullptr) document[success] = false;
+    document["diagnostics"] = json_of_findings(model);
+    document["error"] = json_of(model.error);
+    print_json(document);
+  } else {
+    model.print_findings();
+  }
+  return model.outcome;
+}
+
 }  // namespace koppel::app

@@ -204,14 +204,7 @@ nlohmann::ordered_json Rest::to_json() const {
 
 Exit equilibrium(const Options& options, bool verbose) {
   const Model model = load(options.scene, verbose);
-  if (!model.mechanism) {
-    if (options.json) {
-      print_json({{"found", false}, {"diagnostics", json_of_findings(model)}, {"error", json_of(model.error)}});
-    } else {
-      model.print_findings();
-    }
-    return model.outcome;
-  }
+  if (!model.mechanism) return refused(model, options.json, "found");
   if (!options.json) model.print_findings();
   Rest rest(model, options);
   const Exit outcome = rest.find();

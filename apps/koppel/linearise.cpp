@@ -187,14 +187,7 @@ nlohmann::ordered_json Linear::to_json() const {
 
 Exit linearise(const Options& options, bool verbose) {
   const Model model = load(options.scene, verbose);
-  if (!model.mechanism) {
-    if (options.json) {
-      print_json({{"diagnostics", json_of_findings(model)}, {"error", json_of(model.error)}});
-    } else {
-      model.print_findings();
-    }
-    return model.outcome;
-  }
+  if (!model.mechanism) return refused(model, options.json, nullptr);
   if (!options.json) model.print_findings();
   Linear linear(model, options);
   const Exit outcome = linear.make();

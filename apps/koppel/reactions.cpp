@@ -162,14 +162,7 @@ nlohmann::ordered_json to_json(const Model& model, const Options& options, const
 
 Exit reactions(const Options& options, bool verbose) {
   const Model model = load(options.scene, verbose);
-  if (!model.mechanism) {
-    if (options.json) {
-      print_json({{"found", false}, {"diagnostics", json_of_findings(model)}, {"error", json_of(model.error)}});
-    } else {
-      model.print_findings();
-    }
-    return model.outcome;
-  }
+  if (!model.mechanism) return refused(model, options.json, "found");
   const Bearing found = bearing(model, options.time);
   if (options.json) {
     print_json(to_json(model, options, found));

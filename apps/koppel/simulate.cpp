@@ -91,7 +91,8 @@ class Simulate {
     document["freedoms"] = summary_.freedoms;
     document["switches"] = summary_.switches;
     document["integrator"] = integrator();
-    if (options_.resume.empty()) document["formulation"] = options_.formulation.empty() ? "minimal" : options_.formulation;
+    if (options_.resume.empty())
+      document["formulation"] = options_.formulation.empty() ? "minimal" : options_.formulation;
     document["tolerance"] = summary_.tolerance;
     document["step"] = summary_.step;
     document["stiff"] = summary_.stiff != 0;
@@ -221,14 +222,7 @@ class Simulate {
 
 Exit simulate(const SimulateOptions& options, bool verbose) {
   const Model model = load(options.scene, verbose);
-  if (!model.mechanism) {
-    if (options.json) {
-      print_json({{"finished", false}, {"diagnostics", json_of_findings(model)}, {"error", json_of(model.error)}});
-    } else {
-      model.print_findings();
-    }
-    return model.outcome;
-  }
+  if (!model.mechanism) return refused(model, options.json, "finished");
   if (!options.quiet && !options.json) model.print_findings();
   Simulate simulation(model, options);
   const Exit outcome = simulation.run();

@@ -102,8 +102,8 @@ double Simulation::energy_scale(double kinetic) const {
   return size > 0.0 ? size : 1.0;
 }
 
-/// Baumgarte's parameter [1/s]: what stands open fades in a twentieth of the time that the mechanism takes to fall, or to
-/// move as it starts, through its length; with fixed steps h by no more than 1/(2 h), well within what is stable.
+/// Baumgarte's parameter [1/s]: what stands open fades in a twentieth of the time that the mechanism takes to fall, or
+/// to move as it starts, through its length; with fixed steps h by no more than 1/(2 h), well within what is stable.
 double Simulation::pull() const {
   double speed = 0.0;
   for (std::uint32_t v = 0; v < mechanism_->nv; ++v) {

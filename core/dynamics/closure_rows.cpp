@@ -36,6 +36,7 @@ RowPattern pattern_of(const Mechanism& mechanism) {
 
 ClosureRows::ClosureRows(const Mechanism& mechanism)
     : mechanism_(mechanism), pattern_(pattern_of(mechanism)), values_(pattern_.column.size(), 0.0) {
+  for (const std::uint32_t rate : mechanism.rate_of_column) scales_.push_back(mechanism.rate_scale[rate]);
   for (const Relation& relation : mechanism.relations) {
     for_each_entry(relation, [&](std::uint32_t row, std::uint32_t column) {
       const auto begin = pattern_.column.begin() + pattern_.first[row];

@@ -16,6 +16,8 @@ class ClosureRows {
   explicit ClosureRows(const Mechanism& mechanism);
 
   const RowPattern& pattern() const { return pattern_; }
+  /// Of each column: turns its rate into the size of radians.
+  const std::vector<double>& scales() const { return scales_; }
   /// Takes the values over where the equations stand.
   void evaluate(const Equations& equations);
   const std::vector<double>& values() const { return values_; }
@@ -28,7 +30,7 @@ class ClosureRows {
  private:
   const Mechanism& mechanism_;
   RowPattern pattern_;
-  std::vector<double> values_;
+  std::vector<double> values_, scales_;
   std::vector<std::size_t> order_;  ///< where each entry of each relation's block goes, one relation after another
   std::vector<double> block_;
 };

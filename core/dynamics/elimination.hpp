@@ -18,6 +18,11 @@ struct RowPattern {
   std::uint32_t rows() const { return static_cast<std::uint32_t>(first.size()) - 1; }
 };
 
+/// Part of the greatest entry below which a row follows from the others.
+inline constexpr double redundant_row = 1e-9;
+/// Least ratio of a pivot to the entries beside it (factorise()) at which a choice still serves.
+inline constexpr double worn_pivot = 1e-2;
+
 /// J = P [L, 0; *] [U, R] for the pivots chosen: `dependent` columns follow from the others where J x = b.
 class Elimination {
  public:

@@ -13,7 +13,6 @@
 namespace koppel {
 namespace {
 
-constexpr double redundant = 1e-9;  // part of the greatest entry below which a row follows from the others
 constexpr double rounding = 1e-14;  // scaled residual at which nothing more is gained
 constexpr double all_but = 1e-12;   // and below which a step that gains less than half has met rounding
 constexpr int most_iterations = 12;
@@ -101,9 +100,7 @@ bool EquationsOfMotion::choose(const Eigen::VectorXd& q, double time) {
   if (!equations_.evaluate(q, time)) return fail(Obstacle::plugin);
   last_ = q;
   rows_.evaluate(equations_);
-  std::vector<double> scale;
-  for (const std::uint32_t rate : mechanism_->rate_of_column) scale.push_back(mechanism_->rate_scale[rate]);
-  elimination_.choose(rows_.values(), scale, redundant);
+  elimination_.choose(rows_.values(), rows_.scales(), redundant_row);
   independent_.clear();
   for (const std::uint32_t column : elimination_.independent()) {
     independent_.push_back(mechanism_->rate_of_column[column]);

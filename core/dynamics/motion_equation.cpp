@@ -6,8 +6,7 @@
 namespace koppel {
 namespace {
 
-constexpr double worn_pivot = 1e-2;  // beside the entries of its row
-constexpr double worn_turn = 1.0;    // rad, of a chart that ends at a full turn
+constexpr double worn_turn = 1.0;  // rad, of a chart that ends at a full turn
 
 }  // namespace
 

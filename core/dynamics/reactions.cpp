@@ -8,10 +8,8 @@
 namespace koppel {
 namespace {
 
-constexpr double redundant = 1e-9;   // part of the greatest entry below which a row follows from the others
-constexpr double no_longer = 1e-8;   // and above which it does not any more
-constexpr double worn_pivot = 1e-2;  // beside the entries of its row: below it others are chosen
-constexpr double negligible = 1e-8;  // half the digits: of a load beside the greatest of a self-stress
+constexpr double no_longer = 10.0 * redundant_row;  // part above which a row does not follow any more
+constexpr double negligible = 1e-8;                 // half the digits: of a load beside the greatest of a self-stress
 
 }  // namespace
 
@@ -31,7 +29,6 @@ Reactions::Reactions(std::shared_ptr<const Mechanism> m, Inertias inertias)
       columns_(Eigen::VectorXd::Zero(mechanism_->columns)),
       multipliers_(Eigen::VectorXd::Zero(mechanism_->rows)),
       state_rates_(mechanism_->internal_start) {
-  for (const std::uint32_t rate : mechanism_->rate_of_column) scale_.push_back(mechanism_->rate_scale[rate]);
   loads_.joints.resize(mechanism_->joints.size());
   loads_.efforts = efforts_;
 }
@@ -56,7 +53,7 @@ bool Reactions::tree_efforts(const State& state) {
 }
 
 void Reactions::choose() {
-  elimination_.choose(rows_.values(), scale_, redundant);
+  elimination_.choose(rows_.values(), rows_.scales(), redundant_row);
   elimination_.factorise(rows_.values());
   chosen_ = true;
 }
@@ -66,7 +63,7 @@ bool Reactions::is_chosen_well() {
   const RowPattern& pattern = rows_.pattern();
   double greatest = 0.0;
   for (std::size_t k = 0; k < pattern.column.size(); ++k) {
-    greatest = std::max(greatest, std::abs(rows_.values()[k]) * scale_[pattern.column[k]]);
+    greatest = std::max(greatest, std::abs(rows_.values()[k]) * rows_.scales()[pattern.column[k]]);
   }
   for (const std::uint32_t row : elimination_.left_out()) {
     columns_.setZero();
@@ -78,7 +75,7 @@ bool Reactions::is_chosen_well() {
     efforts_.setZero();
     rows_.subtract_transposed(multipliers_, efforts_);
     for (std::uint32_t c = 0; c < mechanism_->unknowns; ++c) {
-      if (std::abs(efforts_[mechanism_->rate_of_column[c]]) * scale_[c] > no_longer * greatest) return false;
+      if (std::abs(efforts_[mechanism_->rate_of_column[c]]) * rows_.scales()[c] > no_longer * greatest) return false;
     }
   }
   return true;
@@ -188,7 +185,7 @@ Reactions::Determined Reactions::determined() const {
     rows_.subtract_transposed(stresses_.col(n), efforts);
     for (std::uint32_t c = mechanism_->unknowns; c < mechanism_->columns; ++c) {
       const std::uint32_t rate = mechanism_->rate_of_column[c];
-      if (std::abs(efforts[rate]) * scale_[c] > least) result.efforts[rate] = false;
+      if (std::abs(efforts[rate]) * rows_.scales()[c] > least) result.efforts[rate] = false;
     }
   }
   return result;

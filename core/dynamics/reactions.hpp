@@ -60,7 +60,6 @@ class Reactions {
   ClosureRows rows_;
   Elimination elimination_;
   LoadPaths paths_;
-  std::vector<double> scale_;  ///< of the columns: turns rates into radians' size
   bool chosen_ = false, force_failed_ = false;
   Loads loads_;
   std::vector<Pose> outlets_;

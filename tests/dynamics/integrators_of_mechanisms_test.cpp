@@ -36,7 +36,8 @@ TEST(IntegratorsOfMechanisms, SingularPositionsAreCrossedAtAnyTolerance) {
       run.to(10.0);
       const SimulationSummary& summary = run.simulation->summary();
       EXPECT_LT(summary.energy_error, 10 * 2 * 1e-8 * summary.energy_size);
-      EXPECT_LT(summary.rejected, summary.steps) << "steps do not creep up to the singular position";
+      // Ten crossings, at each of which two steps may be disturbed, and six lengths are tried for one.
+      EXPECT_LE(summary.rejected, 10u * 2u * 6u) << "steps do not creep up to the singular position";
     }
   }
 }

@@ -10,7 +10,7 @@ void copy_text(std::string_view from, char (&to)[N]) {
   std::size_t n = std::min(from.size(), N - 1);
   // Cut between characters, never inside one.
   while (n > 0 && n < from.size() && (static_cast<unsigned char>(from[n]) & 0xC0u) == 0x80u) --n;
-  std::memcpy(to, from.data(), n);
+  from.copy(to, n);  // unlike memcpy, allows an empty text that points nowhere
   to[n] = '\0';
 }
 
@@ -77,7 +77,7 @@ koppel_status write_text(std::string_view text, char* buffer, std::size_t size, 
   if (needed != nullptr) *needed = text.size() + 1;
   if (buffer == nullptr) return KOPPEL_OK;
   const std::size_t n = std::min(text.size(), size - 1);
-  std::memcpy(buffer, text.data(), n);
+  text.copy(buffer, n);
   buffer[n] = '\0';
   return KOPPEL_OK;
 }

@@ -7,14 +7,14 @@
 
 #include "mechanism/state.hpp"
 #include "spatial/rotation_vector.hpp"
-#include "spatial/vector.hpp"
+#include "spatial/unit_vector.hpp"
 
 namespace koppel {
 namespace {
 
-/// Rates along the tangents at n(delta) = cos|w| n0 + sin|w|/|w| w, w = tangents(n0) delta, from those of delta.
+/// Rates along the tangents at n(delta) = cos|w| n0 + sin|w|/|w| w, w = rate_axes(n0) delta, from those of delta.
 Eigen::Matrix2d unit_vector_rates(const Vector3& base, const Eigen::Vector2d& delta) {
-  const Eigen::Matrix<double, 3, 2> t = tangents<double>(base);
+  const Eigen::Matrix<double, 3, 2> t = rate_axes<double>(base);
   const Vector3 w = t * delta;
   const double angle = w.norm(), square = angle * angle;
   const bool small = angle < 1e-3;
@@ -23,7 +23,7 @@ Eigen::Matrix2d unit_vector_rates(const Vector3& base, const Eigen::Vector2d& de
   const Vector3 n = std::cos(angle) * base + sinc * w;
   const Eigen::RowVector2d along = w.transpose() * t;
   const Eigen::Matrix<double, 3, 2> slope = -sinc * base * along + sinc * t + sinc_slope * w * along;
-  return tangents<double>(n.normalized()).transpose() * slope;
+  return rate_axes<double>(n.normalized()).transpose() * slope;
 }
 
 }  // namespace

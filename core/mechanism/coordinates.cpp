@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "spatial/rotation_vector.hpp"
-#include "spatial/vector.hpp"
+#include "spatial/unit_vector.hpp"
 
 namespace koppel {
 namespace {
@@ -32,7 +32,7 @@ void integrate_block(BlockKind kind, const double* q, const double* delta, doubl
     }
     case BlockKind::unit_vector: {
       const Vector3 n = vector(q);
-      const Vector3 step = tangents<double>(n) * Eigen::Vector2d(delta[0], delta[1]);
+      const Vector3 step = rate_axes<double>(n) * Eigen::Vector2d(delta[0], delta[1]);
       const double angle = step.norm();
       const double slope = angle > 0.0 ? std::sin(angle) / angle : 1.0;
       store((std::cos(angle) * n + slope * step).normalized(), result);
@@ -60,7 +60,7 @@ void difference_block(BlockKind kind, const double* from, const double* to, doub
         delta[1] = 0.0;
         return;
       }
-      const Eigen::Vector2d components = tangents<double>(n).transpose() * across;
+      const Eigen::Vector2d components = rate_axes<double>(n).transpose() * across;
       store(Eigen::Vector2d(angle / sine * components), delta);
       return;
     }
@@ -88,7 +88,7 @@ void tangent_block(BlockKind kind, const double* q, double* jacobian) {
       return;
     }
     case BlockKind::unit_vector: {
-      const Eigen::Matrix<double, 3, 2> t = tangents<double>(vector(q));
+      const Eigen::Matrix<double, 3, 2> t = rate_axes<double>(vector(q));
       for (Eigen::Index i = 0; i < 3; ++i) {
         jacobian[2 * i] = t(i, 0);
         jacobian[2 * i + 1] = t(i, 1);

@@ -10,6 +10,7 @@
 
 #include "directions.hpp"
 #include "spatial/dual.hpp"
+#include "spatial/unit_vector.hpp"
 
 namespace koppel::test {
 namespace {
@@ -196,6 +197,26 @@ TEST(Tangents, CompleteEveryDirectionToARightHandedFrame) {
     Eigen::Index least = 0;
     n.cwiseAbs().minCoeff(&least);
     EXPECT_EQ(t(least, 0), 0) << "the first tangent is across the axis that n has least of";
+  }
+}
+
+TEST(RateAxes, CompleteAFrameThatChangesSmoothly) {
+  Random random(11);
+  for (int i = 0; i < 1000; ++i) {
+    Vector3 n = random.direction();
+    if (i < 6) n = (i < 3 ? 1.0 : -1.0) * Vector3::Unit(i % 3);
+    if (i >= 6 && i < 20) n = Vector3(std::pow(10.0, -i), std::pow(0.1, i), -1).normalized();
+    const Eigen::Matrix<double, 3, 2> t = rate_axes<double>(n);
+    Matrix3 frame;
+    frame << t, n;
+    EXPECT_LE((frame.transpose() * frame - Matrix3::Identity()).cwiseAbs().maxCoeff(), 8 * eps);
+    EXPECT_NEAR(frame.determinant(), 1, 16 * eps);
+    // With n they turn about n by tan(angle from z / 2) of the way, and across n by the way.
+    const double across = std::hypot(n.x(), n.y()), way = 1e-6;
+    const double sway = n.z() > 0.0 ? across / (1.0 + n.z()) : (1.0 - n.z()) / across;
+    if (!(way * sway < 1e-3)) continue;
+    const Vector3 beside = (n + way * (t * Eigen::Vector2d(std::cos(i), std::sin(i)))).normalized();
+    EXPECT_LE((rate_axes<double>(beside) - t).norm(), 2.0 * way * (1.0 + sway));
   }
 }
 

@@ -92,6 +92,13 @@ koppel_status koppel_simulation_integrator(const koppel_simulation* simulation, 
   return koppel::write_text(koppel::integrators()[kind].name, text, size, needed);
 }
 
+koppel_status koppel_simulation_formulation(const koppel_simulation* simulation, char* text, size_t size,
+                                            size_t* needed) {
+  if (simulation == nullptr) return KOPPEL_INVALID_ARGUMENT;
+  const auto kind = static_cast<std::size_t>(simulation->simulation->options().formulation);
+  return koppel::write_text(koppel::formulations()[kind].name, text, size, needed);
+}
+
 koppel_status koppel_formulations(char* text, size_t size, size_t* needed) {
   return koppel::guarded(nullptr, [&] {
     std::string list;

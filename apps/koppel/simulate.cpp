@@ -62,7 +62,7 @@ class Simulate {
     std::fprintf(out, "freedoms    %u independent coordinates, chosen anew %u times\n", summary_.freedoms,
                  summary_.switches);
     std::fprintf(out, "steps       %llu by %s, and %llu rejected; %llu evaluations\n", count(summary_.steps),
-                 integrator().c_str(), count(summary_.rejected), count(summary_.evaluations));
+                 name_by(koppel_simulation_integrator).c_str(), count(summary_.rejected), count(summary_.evaluations));
     if (summary_.stiff != 0) {
       std::fprintf(out, "stiff       steps were as short as stability wants them: try --integrator cvode\n");
     }
@@ -90,9 +90,8 @@ class Simulate {
     document["duration"] = duration_;
     document["freedoms"] = summary_.freedoms;
     document["switches"] = summary_.switches;
-    document["integrator"] = integrator();
-    if (options_.resume.empty())
-      document["formulation"] = options_.formulation.empty() ? "minimal" : options_.formulation;
+    document["integrator"] = name_by(koppel_simulation_integrator);
+    document["formulation"] = name_by(koppel_simulation_formulation);
     document["tolerance"] = summary_.tolerance;
     document["step"] = summary_.step;
     document["stiff"] = summary_.stiff != 0;
@@ -131,10 +130,9 @@ class Simulate {
     return text;
   }
 
-  std::string integrator() const {
-    return text_of([&](char* text, std::size_t size, std::size_t* needed) {
-      return koppel_simulation_integrator(simulation_.get(), text, size, needed);
-    });
+  std::string name_by(koppel_status (*name)(const koppel_simulation*, char*, size_t, size_t*)) const {
+    return text_of(
+        [&](char* text, std::size_t size, std::size_t* needed) { return name(simulation_.get(), text, size, needed); });
   }
 
   nlohmann::ordered_json values(std::int32_t what, std::int32_t kind, std::size_t size) const {

@@ -1,7 +1,6 @@
 // Backward differentiation formulas by CVODE of SUNDIALS: implicit, so that stiff forces do not shorten the steps.
 #pragma once
 
-#include <array>
 #include <memory>
 
 #include "dynamics/integrator.hpp"
@@ -32,13 +31,8 @@ class Cvode final : public Integrator {
   struct Memory;  ///< what SUNDIALS holds
   friend struct Memory;
 
-  void take_polynomial();
-
   std::unique_ptr<Memory> memory_;
   Eigen::VectorXd argument_, rate_, moved_;
-  std::array<Eigen::VectorXd, 6> derivatives_;  ///< of the last step's polynomial
-  double end_ = 0.0;                            ///< [s] where they are taken
-  int degree_ = -1;                             ///< of the polynomial of the last step; -1: not taken yet
 };
 
 }  // namespace koppel

@@ -105,6 +105,11 @@ bool EquationsOfMotion::choose(const Eigen::VectorXd& q, double time) {
   for (const std::uint32_t column : elimination_.independent()) {
     independent_.push_back(mechanism_->rate_of_column[column]);
   }
+  conditions_.clear();
+  for (std::uint32_t row = 0; row < mechanism_->rows; ++row) {
+    const auto& out = elimination_.left_out();
+    if (std::find(out.begin(), out.end(), row) == out.end()) conditions_.push_back(row);
+  }
   const auto f = static_cast<Eigen::Index>(independent_.size());
   transfer_.resize(mechanism_->columns, f);
   inertial_.resize(mechanism_->nv, f);
@@ -174,10 +179,16 @@ bool EquationsOfMotion::velocities(const Eigen::VectorXd& rates) {
   return true;
 }
 
+bool EquationsOfMotion::opening_rates(Eigen::VectorXd& rates) {
+  if (mechanism_->rows == 0) return true;
+  if (!equations_.time_rate(rates)) return fail(Obstacle::plugin);
+  if (held_) rates.setZero();
+  rows_.add_product(v_, rates);
+  return true;
+}
+
 double EquationsOfMotion::opening() {
-  if (mechanism_->rows == 0 || !equations_.time_rate(b_)) return 0.0;
-  rows_.add_product(v_, b_);
-  return b_.lpNorm<Eigen::Infinity>();
+  return mechanism_->rows > 0 && opening_rates(b_) ? b_.lpNorm<Eigen::Infinity>() : 0.0;
 }
 
 /// Mass in the independent coordinates, and the efforts that their unit accelerations cost.
@@ -233,6 +244,16 @@ bool EquationsOfMotion::tree_accelerations() {
   return true;
 }
 
+bool EquationsOfMotion::drive(const Chart& chart, double time, Eigen::VectorXd& delta, Eigen::VectorXd& v) {
+  if (!take_inputs(time)) return false;
+  for (std::size_t i = 0; i < mechanism_->inputs.size(); ++i) {
+    const Input& input = mechanism_->inputs[i];
+    delta[input.v] = inputs_.input[static_cast<Eigen::Index>(i)] - chart.base()[input.q];
+    v[input.v] = inputs_.input_rate[static_cast<Eigen::Index>(i)];
+  }
+  return true;
+}
+
 bool EquationsOfMotion::stand(const Chart& chart, double time, const Eigen::VectorXd& delta, const Eigen::VectorXd& v) {
   if (!take_inputs(time)) return false;
   chart.position(delta, q_);
@@ -279,6 +300,11 @@ bool EquationsOfMotion::leave_unaccelerated(const double* states, double* state_
   }
   a_.setZero();
   scatter(x_, a_);
+  return take_forces(states, state_rates);
+}
+
+/// The motion with the accelerations a_, and the forces that act.
+bool EquationsOfMotion::take_forces(const double* states, double* state_rates) {
   if (!equations_.motion(q_, v_, a_)) return fail(Obstacle::plugin);
   std::fill(on_nodes_.begin(), on_nodes_.end(), Wrench{});
   force_efforts_ = pushed_;
@@ -288,6 +314,19 @@ bool EquationsOfMotion::leave_unaccelerated(const double* states, double* state_
     force_failed_ = true;
     return false;
   }
+  return true;
+}
+
+bool EquationsOfMotion::imbalance(const double* states, const Eigen::VectorXd& a, const Eigen::VectorXd& multipliers,
+                                  double* state_rates, Eigen::VectorXd& missing) {
+  a_ = a;
+  for (std::size_t i = 0; i < mechanism_->inputs.size(); ++i) {
+    a_[mechanism_->inputs[i].v] = inputs_.input_acceleration[static_cast<Eigen::Index>(i)];
+  }
+  if (!take_forces(states, state_rates)) return false;
+  take_inverse_dynamics();
+  missing = residual_efforts_;
+  rows_.subtract_transposed(multipliers, missing);
   return true;
 }
 
@@ -336,6 +375,13 @@ bool EquationsOfMotion::complete(Eigen::VectorXd& a) {
   return true;
 }
 
+/// Efforts left in the dependent columns are carried by the loops; those in the driven ones by the drives.
+const Eigen::VectorXd& EquationsOfMotion::multipliers() {
+  for (std::uint32_t c = 0; c < mechanism_->columns; ++c) x_[c] = residual_efforts_[mechanism_->rate_of_column[c]];
+  if (mechanism_->rows > 0) elimination_.solve_transposed(x_, multipliers_);
+  return multipliers_;
+}
+
 bool EquationsOfMotion::power(const double* states, double& power) {
   power = 0.0;
   double dissipated = 0.0, external = 0.0;
@@ -348,11 +394,8 @@ bool EquationsOfMotion::power(const double* states, double& power) {
   }
   power = external - dissipated;
   if (mechanism_->inputs.empty()) return true;
-  // Efforts left in the dependent columns are carried by the loops; those in the driven ones by the drives.
-  for (std::uint32_t c = 0; c < mechanism_->columns; ++c) x_[c] = residual_efforts_[mechanism_->rate_of_column[c]];
-  if (mechanism_->rows > 0) elimination_.solve_transposed(x_, multipliers_);
   efforts_ = residual_efforts_;
-  rows_.subtract_transposed(multipliers_, efforts_);
+  rows_.subtract_transposed(multipliers(), efforts_);
   for (const Input& input : mechanism_->inputs) power += efforts_[input.v] * v_[input.v];
   // What constraints with time of their own deliver.
   if (mechanism_->explicit_time && equations_.time_rate(b_)) power -= multipliers_.dot(b_);

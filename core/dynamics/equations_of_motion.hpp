@@ -41,6 +41,8 @@ class EquationsOfMotion {
 
   /// Chooses independent coordinates by their values at a position, which need not be closed. False: a plugin failed.
   bool choose(const Eigen::VectorXd& q, double time);
+  /// Closure equations (rows) that do not follow from others there, ascending.
+  const std::vector<std::uint32_t>& conditions() const { return conditions_; }
   /// Rates (in v) that are independent, ascending.
   const std::vector<std::uint32_t>& independent() const { return independent_; }
 
@@ -71,6 +73,11 @@ class EquationsOfMotion {
   /// Instead of close() and velocities(): takes position and rates of the tree (v) as they are, whether or not they
   /// close the loops and fit the drives.
   bool stand(const Chart& chart, double time, const Eigen::VectorXd& delta, const Eigen::VectorXd& v);
+  /// Before stand(): puts driven coordinates and their rates where the drives want them at a time.
+  bool drive(const Chart& chart, double time, Eigen::VectorXd& delta, Eigen::VectorXd& v);
+  /// After stand(): how far each closure equation is open (rows, scaled), and at which rates they open [1/s].
+  const Eigen::VectorXd& closure() const { return equations_.residual; }
+  bool opening_rates(Eigen::VectorXd& rates);
   /// Baumgarte's stabilisation of what stands so: from now on accelerations() let every closure equation r, and every
   /// drive's, fade as r'' + 2 pull r' + pull^2 r = 0. pull [1/s]; 0: not at all.
   void stabilise(double pull) { pull_ = pull; }
@@ -78,6 +85,17 @@ class EquationsOfMotion {
   /// All accelerations, by the forces that act; after velocities(). states: of the forces, and their rates.
   bool accelerations(const double* states, double* state_rates);
   const Eigen::VectorXd& a() const { return a_; }
+  /// After accelerations() or imbalance(): efforts for one of each closure equation with which the loops, and the
+  /// drives, balance the tree (rows); 0 of those that follow from others.
+  const Eigen::VectorXd& multipliers();
+  /// Subtracts from efforts (nv) what the loops do to the tree with such multipliers.
+  void subtract_loops(const Eigen::VectorXd& multipliers, Eigen::VectorXd& efforts) const {
+    rows_.subtract_transposed(multipliers, efforts);
+  }
+  /// After stand(): the efforts (nv) that are missing to accelerations a (nv; those of the drives count as they are
+  /// driven) with multipliers of the loops. states: of the forces, and their rates.
+  bool imbalance(const double* states, const Eigen::VectorXd& a, const Eigen::VectorXd& multipliers,
+                 double* state_rates, Eigen::VectorXd& missing);
   /// What forces, gravity and the motion of the drives do along each independent coordinate while none of these is
   /// accelerated [N m, N]; after velocities(). Needs no mass.
   bool efforts(const double* states, double* state_rates, Eigen::VectorXd& along);
@@ -116,6 +134,7 @@ class EquationsOfMotion {
   bool take_inputs(double time);
   void scatter(const Eigen::VectorXd& columns, Eigen::VectorXd& rates) const;
   bool leave_unaccelerated(const double* states, double* state_rates);
+  bool take_forces(const double* states, double* state_rates);
   void add_pull();
   void take_inverse_dynamics();
   void reduce_mass();
@@ -136,7 +155,7 @@ class EquationsOfMotion {
   State inputs_;              ///< only its inputs count
   Eigen::Matrix3Xd offsets_;  ///< of the inputs
   Eigen::VectorXd pushed_;
-  std::vector<std::uint32_t> independent_;
+  std::vector<std::uint32_t> independent_, conditions_;
   double time_ = 0.0, conditioning_ = 1.0, pull_ = 0.0;
   Obstacle obstacle_ = Obstacle::none;
   bool force_failed_ = false, held_ = false;

@@ -7,11 +7,19 @@ namespace koppel {
 namespace {
 
 constexpr std::array all{
-    FormulationName{Formulation::minimal, "minimal", "independent coordinates, loops closed at every evaluation"},
-    FormulationName{Formulation::projected, "projected",
+    FormulationName{Formulation::minimal, "minimal", {}, "independent coordinates, loops closed at every evaluation"},
+    FormulationName{Formulation::projected,
+                    "projected",
+                    {},
                     "all coordinates of the tree and multipliers (index 1), projected after every step"},
-    FormulationName{Formulation::baumgarte, "baumgarte",
+    FormulationName{Formulation::baumgarte,
+                    "baumgarte",
+                    {},
                     "the same with Baumgarte's stabilisation: quick, and open by about the tolerance"},
+    FormulationName{Formulation::ggl, "ggl", IntegratorKind::ida,
+                    "multipliers for positions and for rates beside the equations (index 2; Gear, Gupta, Leimkuhler)"},
+    FormulationName{Formulation::index3, "index3", IntegratorKind::generalised_alpha,
+                    "multipliers for positions beside the equations (index 3): fixed steps, stiff forces"},
 };
 
 }  // namespace
@@ -21,6 +29,11 @@ std::span<const FormulationName> formulations() { return all; }
 const FormulationName* find_formulation(std::string_view name) {
   const auto* found = std::find_if(all.begin(), all.end(), [&](const FormulationName& x) { return x.name == name; });
   return found == all.end() ? nullptr : found;
+}
+
+const FormulationName& formulation_for(IntegratorKind integrator) {
+  const auto* found = std::find_if(all.begin(), all.end(), [&](const auto& x) { return x.integrator == integrator; });
+  return found == all.end() ? all.front() : *found;
 }
 
 }  // namespace koppel

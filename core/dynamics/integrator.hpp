@@ -68,7 +68,8 @@ class Integrator {
 };
 
 /// tolerance: of a step's error in the problem's scales, for those that adapt their steps. step: of fixed steps, else 0
-/// or the first; it is used up to the limit of the first step. Throws std::bad_alloc.
+/// or the first; it is used up to the limit of the first step. Null: the integrator is for mechanisms with loops as
+/// constraints (Formulation), and the problem is none. Throws std::bad_alloc.
 std::unique_ptr<Integrator> make_integrator(IntegratorKind kind, DifferentialEquation& problem, double tolerance,
                                             double step);
 

@@ -1,5 +1,6 @@
 #include "dynamics/motion_equation.hpp"
 
+#include "dynamics/constrained_equation.hpp"
 #include "dynamics/minimal_equation.hpp"
 #include "dynamics/multiplier_equation.hpp"
 
@@ -104,6 +105,8 @@ std::unique_ptr<MotionEquation> make_equation(Formulation formulation, Equations
   switch (formulation) {
     case Formulation::projected: return std::make_unique<MultiplierEquation>(motion, AfterSteps::project);
     case Formulation::baumgarte: return std::make_unique<MultiplierEquation>(motion, AfterSteps::leave);
+    case Formulation::ggl:
+    case Formulation::index3: return std::make_unique<ConstrainedEquation>(motion);
     case Formulation::minimal: break;
   }
   return std::make_unique<MinimalEquation>(motion);

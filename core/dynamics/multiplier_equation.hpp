@@ -11,7 +11,7 @@ enum class AfterSteps {
   leave,    ///< the accelerations pull them back (EquationsOfMotion::stabilise)
 };
 
-class MultiplierEquation final : public MotionEquation {
+class MultiplierEquation : public MotionEquation {
  public:
   MultiplierEquation(EquationsOfMotion& motion, AfterSteps after);
 

@@ -342,6 +342,8 @@ static void simulates_a_pendulum(koppel_engine* engine) {
   CHECK(summary.tolerance == 1e-10 && summary.step == 0.0 && summary.stiff == 0);
   CHECK_OK(koppel_simulation_integrator(simulation, name, sizeof name, &needed));
   CHECK(strcmp(name, "dormand_prince") == 0);
+  CHECK_OK(koppel_simulation_formulation(simulation, name, sizeof name, &needed));
+  CHECK(strcmp(name, "minimal") == 0);
   CHECK_OK(koppel_integrators(list, sizeof list, &needed));
   CHECK(strstr(list, "dormand_prince: ") == list && strstr(list, "\ncvode: ") != NULL);
   CHECK_OK(koppel_formulations(list, sizeof list, &needed));

@@ -80,6 +80,11 @@ class Simulate(ProgramTest):
             self.assertEqual(document["formulation"], name)
             ends[name] = document["final"]["coordinates"]["crank.angle"]
             self.assertAlmostEqual(ends[name], ends["minimal"], delta=1e-5)
+        for how in (("--formulation", "ggl"), ("--integrator", "generalised_alpha", "--step", "0.001")):
+            document = self.json(FINE, "simulate", DYNAMICS / "fourbar_free.toml", "--duration", "1", *how)
+            self.assertEqual((document["formulation"], document["integrator"]),
+                             ("ggl", "ida") if "ggl" in how else ("index3", "generalised_alpha"))
+            self.assertAlmostEqual(document["final"]["coordinates"]["crank.angle"], ends["minimal"], delta=1e-4)
         document = self.json(USAGE, "simulate", DYNAMICS / "fourbar_free.toml", "--formulation", "maximal")
         self.assertEqual(document["error"]["code"], "E0310")
 

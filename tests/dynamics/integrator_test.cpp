@@ -6,9 +6,11 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "dynamics/formulation.hpp"
 #include "dynamics/runge_kutta.hpp"
 #include "dynamics/semi_implicit.hpp"
 
@@ -92,6 +94,15 @@ Errors errors(IntegratorKind kind, int n, Problem problem, Eigen::VectorXd (*sol
   return result;
 }
 
+/// Those of differential equations.
+std::vector<IntegratorName> of_rates() {
+  std::vector<IntegratorName> names;
+  for (const IntegratorName& name : integrators()) {
+    if (!formulation_for(name.kind).integrator) names.push_back(name);
+  }
+  return names;
+}
+
 struct Order {
   IntegratorKind kind;
   int steps;
@@ -123,7 +134,7 @@ TEST(Integrators, HaveTheirOrders) {
 /// Neighbouring solutions keep their distance: errors of steps add up, at most the tolerance in two components each. A
 /// decade for what backward differentiation formulas leave uncontrolled when they change their order.
 TEST(Integrators, ErrorsFollowTheTolerance) {
-  for (const IntegratorName& which : integrators()) {
+  for (const IntegratorName& which : of_rates()) {
     if (which.control == StepControl::step) continue;
     SCOPED_TRACE(which.name);
     double before = std::numeric_limits<double>::infinity();
@@ -148,6 +159,13 @@ TEST(Integrators, ErrorsFollowTheTolerance) {
       EXPECT_LT(error, before / 5.0);
       before = error;
     }
+  }
+}
+
+TEST(Integrators, OfLoopsAreNotForOtherProblems) {
+  Problem problem = oscillator();
+  for (const IntegratorKind kind : {IntegratorKind::ida, IntegratorKind::generalised_alpha}) {
+    EXPECT_EQ(make_integrator(kind, problem, 1e-8, 0.01), nullptr);
   }
 }
 
@@ -206,7 +224,7 @@ TEST(Integrators, ComeRoundArenstorfsOrbit) {
 }
 
 TEST(Integrators, ComponentsOfInfiniteScaleDoNotCount) {
-  for (const IntegratorName& which : integrators()) {
+  for (const IntegratorName& which : of_rates()) {
     if (which.control == StepControl::step) continue;
     const auto steps = [&](double scale) {
       Problem problem{2, [](double t, const Eigen::VectorXd& y, Eigen::VectorXd& rate) {
@@ -225,7 +243,7 @@ TEST(Integrators, ComponentsOfInfiniteScaleDoNotCount) {
 }
 
 TEST(Integrators, StopWhereTheSolutionEnds) {
-  for (const IntegratorName& which : integrators()) {
+  for (const IntegratorName& which : of_rates()) {
     if (which.control == StepControl::step) continue;
     for (const bool nan : {false, true}) {
       Problem problem{1, [nan](double t, const Eigen::VectorXd&, Eigen::VectorXd& rate) {
@@ -284,7 +302,7 @@ TEST(SemiImplicit, KeepsEnergyWithinBounds) {
 }
 
 TEST(Integrators, AShortenedStepEndsWhereItShould) {
-  for (const IntegratorName& which : integrators()) {
+  for (const IntegratorName& which : of_rates()) {
     SCOPED_TRACE(which.name);
     const double step = which.kind == IntegratorKind::semi_implicit ? 1e-6 : 0.01;
     Problem problem = swinging();

@@ -96,6 +96,18 @@ TEST(IntegratorsOfMechanisms, CvodeTakesStiffForcesInFewSteps) {
   EXPECT_TRUE(explicit_.simulation->summary().stiff);
 }
 
+/// The same without the damper swings 50 times in a step: what is too quick for the step fades by a tenth each, with the
+/// square of their number where three modes do so together.
+TEST(IntegratorsOfMechanisms, GeneralisedAlphaTakesStiffForcesInLongSteps) {
+  std::string springs = stiff;
+  springs.erase(springs.find("damping"));
+  Simulated run(springs, by(IntegratorKind::generalised_alpha, 0.0, 1e-2, 2.0));
+  for (int i = 1; i <= 200; ++i) {
+    run.to(1e-2 * i);
+    ASSERT_LT(std::abs(run.q("slide.displacement")), 0.1 * (1 + i) * (1 + i) * std::pow(0.9, i)) << i;
+  }
+}
+
 TEST(IntegratorsOfMechanisms, TheRemedyForStiffnessIsNamed) {
   Simulated run(stiff, by(IntegratorKind::classical, 0.0, 1e-3, 1.0));
   ASSERT_TRUE(run.started);

@@ -76,6 +76,7 @@ inline SimulationOptions within(double tolerance, double end) {
 inline SimulationOptions by(IntegratorKind integrator, double tolerance, double step, double end) {
   SimulationOptions options;
   options.integrator = integrator;
+  options.formulation = formulation_for(integrator).kind;
   options.tolerance = tolerance;
   options.step = step;
   options.end = end;

@@ -196,7 +196,8 @@ KOPPEL_EXPORT koppel_status koppel_state_copy(const koppel_state* from, koppel_s
 enum { KOPPEL_Q = 1, KOPPEL_V = 2, KOPPEL_A = 3 };
 
 /* q holds `coordinates` numbers, v and a `rates`. Cut joints' values included, angles not wrapped. Rates of a unit
- * vector n are along the tangents t1 = normalised(e x n), t2 = n x t1, e the world axis that n has least of. */
+ * vector n are along the x and y axes as they stand after the shortest turn that takes z to n; at n = -z along x, -y.
+ */
 KOPPEL_EXPORT koppel_status koppel_state_get(const koppel_state* state, int32_t what, double* values, size_t count);
 /* Sets a start for the next close, of all coordinates; quaternions are normalised. The inputs keep their values. */
 KOPPEL_EXPORT koppel_status koppel_state_set(koppel_state* state, int32_t what, const double* values, size_t count);
@@ -408,9 +409,9 @@ typedef struct koppel_simulation_options {
       tolerance; /* of one step: radians, lengths over the scene's, their rates per second; 0: the scene's, or 1e-8 */
   double step;   /* [s] of fixed steps; 0: the scene's, or steps by the tolerance */
   double end;    /* [s] where the last step shall end; 0: the scene's duration after the start */
-  const char* integrator; /* a name that koppel_integrators lists; NULL: the scene's if it goes with tolerance and step,
-                             or "dormand_prince" with a tolerance, "classical" with a step */
-  const char* formulation; /* a name that koppel_formulations lists; NULL: "minimal" */
+  const char* integrator;  /* a name that koppel_integrators lists; NULL: the formulation's own, the scene's if it goes
+                              with tolerance and step, or "dormand_prince" with a tolerance, "classical" with a step */
+  const char* formulation; /* a name that koppel_formulations lists; NULL: the integrator's own, or "minimal" */
 } koppel_simulation_options;
 
 /* How it went so far. */
@@ -459,9 +460,11 @@ KOPPEL_EXPORT koppel_status koppel_simulation_save(koppel_simulation* simulation
  * INVALID_ARGUMENT: the bytes are damaged, of another version of the format, or of another scene. */
 KOPPEL_EXPORT koppel_status koppel_simulation_load(const koppel_mechanism* mechanism, const void* bytes, size_t size,
                                                    koppel_simulation** simulation, koppel_error* error);
-/* The name of the integrator that is used. */
+/* The names of the integrator and of the formulation that are used. */
 KOPPEL_EXPORT koppel_status koppel_simulation_integrator(const koppel_simulation* simulation, char* text, size_t size,
                                                          size_t* needed);
+KOPPEL_EXPORT koppel_status koppel_simulation_formulation(const koppel_simulation* simulation, char* text, size_t size,
+                                                          size_t* needed);
 /* All integrators, and all formulations of the equations of motion, one in a line: "name: what it is". */
 KOPPEL_EXPORT koppel_status koppel_integrators(char* text, size_t size, size_t* needed);
 KOPPEL_EXPORT koppel_status koppel_formulations(char* text, size_t size, size_t* needed);

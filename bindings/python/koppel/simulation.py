@@ -39,8 +39,8 @@ class Simulation(Handle):
 
     tolerance: of a step; 0: the scene's, or 1e-8. step [s]: of fixed steps; 0: the scene's, or steps by the tolerance.
     end [s]: where the last step shall end; 0: the scene's duration. integrator: a name as `koppel simulate --help`
-    lists them; None: the scene's or the default. formulation: likewise; None: "minimal". Error: the state is not closed, there is no such integrator, or
-    nothing can be computed there.
+    lists them; None: the formulation's, the scene's or the default. formulation: likewise; None: the integrator's, or
+    "minimal". Error: the state is not closed, there is no such integrator, or nothing can be computed there.
     """
 
     _destroy = ("koppel_simulation_destroy",)
@@ -64,7 +64,7 @@ class Simulation(Handle):
         return Summary(*(field.type(getattr(struct, field.name)) for field in dataclasses.fields(Summary)))
 
 
-def simulate(scene, times=None, tolerance=0.0, step=0.0, integrator=None):
+def simulate(scene, times=None, tolerance=0.0, step=0.0, integrator=None, formulation=None):
     """Lets a mechanism move from its closed position at time 0 through times [s] (None: as the scene proposes).
 
     scene: a Mechanism, or the path of a scene file. Returns a dict of arrays, all of the length of times: "time" and
@@ -77,7 +77,8 @@ def simulate(scene, times=None, tolerance=0.0, step=0.0, integrator=None):
     table = numpy.empty((times.size, mechanism.sizes.records))
     with State(mechanism) as state:
         state.close()
-        with Simulation(state, tolerance, step, times[-1] if times.size else 0.0, integrator) as simulation:
+        end = times[-1] if times.size else 0.0
+        with Simulation(state, tolerance, step, end, integrator, formulation) as simulation:
             for row, time in enumerate(times):
                 simulation.advance(time, state)
                 table[row] = state.records()

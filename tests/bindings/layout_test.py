@@ -53,6 +53,7 @@ class Layout(unittest.TestCase):
         values = {name: int(value) for name, value in re.findall(r"^constant KOPPEL_(\w+) (-?\d+)$", ABI, flags=re.M)}
         for prefix, names in (("SEVERITY", structs.SEVERITIES), ("VERDICT", structs.VERDICTS),
                               ("SOLVER", structs.SOLVERS), ("METHOD", structs.METHODS), ("FLOW", structs.FLOWS)):
+            self.assertEqual(sum(name.startswith(prefix + "_") for name in values), len(names), prefix)
             for number, name in enumerate(names):
                 self.assertEqual(values[f"{prefix}_{name.upper().replace(' ', '_')}"], number)
         kinds = {name[5:].lower(): value for name, value in values.items() if name.startswith("KIND_")}

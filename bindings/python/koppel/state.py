@@ -15,7 +15,7 @@ class Report:
     coordinate_error: estimated greatest error of an unknown, likewise."""
 
     verdict: str  # "open" (nothing to close), "closed", "not found" or "retry"
-    solver: str  # "none" (was closed already), "newton" or "ceres"
+    solver: str  # "none" (was closed already), "newton", "ceres" or "flow" (closed forms and small blocks)
     iterations: int
     rank: int
     equations: int
@@ -156,8 +156,8 @@ class State(Handle):
         call_plain("koppel_state_set_input", self.handle, index, value, rate, acceleration)
 
     def close(self, method="auto", max_iterations=0, tolerance=0.0):
-        """Closes the loops with the inputs held; returns the Report. method: "auto", "newton" or "ceres". Error: no
-        closed position was found; the state is as before."""
+        """Closes the loops with the inputs held; returns the Report. method: "auto", "newton", "ceres" or "flow". Error:
+        no closed position was found; the state is as before."""
         options = structs.CloseOptions(method=structs.METHODS.index(method), max_iterations=max_iterations,
                                        tolerance=tolerance)
         return self._reported("koppel_close", options)

@@ -238,10 +238,12 @@ namespace {
 
 /// The tracker of the mechanism, made on first need; null if it has none.
 FlowTracker* tracker_of(Work& work) {
-  if (!work.tracker_sought) {
-    work.tracker_sought = true;
-    if (auto tracker = FlowTracker::of(*work.mechanism, plan_flow(*work.mechanism, FlowChoice::first))) {
+  if (work.tracker_sought) return work.tracker.get();
+  work.tracker_sought = true;
+  for (const FlowChoice choice : {FlowChoice::first, FlowChoice::best}) {
+    if (auto tracker = FlowTracker::of(*work.mechanism, plan_flow(*work.mechanism, choice))) {
       work.tracker = std::make_unique<FlowTracker>(std::move(*tracker));
+      break;
     }
   }
   return work.tracker.get();
@@ -255,6 +257,9 @@ std::optional<koppel_status> track(Work& work, State& state, Report& report) {
   FlowTracker* tracker = tracker_of(work);
   if (tracker == nullptr) return std::nullopt;
   work.delta = h * state.v + (h * h / 2.0) * state.a;
+  if (state.history.step != 0.0) {
+    work.delta += (h * h * h / 6.0 / state.history.step) * (state.a - state.history.acceleration);
+  }
   integrate(mechanism, state.q, work.delta, work.q);
   for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "closure/loop_cut.hpp"
+#include "spatial/quaternion.hpp"
 
 namespace koppel {
 namespace {
@@ -39,11 +40,16 @@ std::optional<FlowTracker> FlowTracker::of(const Mechanism& mechanism, const Flo
     if (std::find(flow.inputs.begin(), flow.inputs.end(), v) == flow.inputs.end()) return std::nullopt;
   }
   FlowTracker tracker(mechanism, flow);
+  std::size_t most_columns = 0;
   for (const FlowStep& from : flow.steps) {
     Step step;
     if (!tracker.compile(flow, from, step)) return std::nullopt;
+    for (const Row& row : step.rows) {
+      most_columns = std::max({most_columns, 3 * row.lower.size(), 3 * row.upper.size()});
+    }
     tracker.steps_.push_back(std::move(step));
   }
+  tracker.columns_.reserve(most_columns);
   return tracker;
 }
 
@@ -53,24 +59,52 @@ FlowTracker::FlowTracker(const Mechanism& mechanism, const Flow& flow)
       inputs_(flow.inputs),
       bases_(variables_.size()),
       places_(variables_.size()),
-      errors_(variables_.size(), 0.0) {}
+      errors_(variables_.size(), 0.0),
+      mechanism_(&mechanism),
+      kinematics_(mechanism) {
+  const auto count = flow.loops.imaginary.size();
+  if (count == 0) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [a, b] = flow.loops.imaginary[i];
+    const auto first = static_cast<std::uint32_t>(variables_.size() - 4 * (count - i));
+    imaginary_.push_back({a.value, b.value, first});
+  }
+  const auto more = static_cast<Eigen::Index>(count);
+  extended_[0].setZero(mechanism.nq + 7 * more);
+  extended_[1].setZero(mechanism.nv + 6 * more);
+  extended_[2].setZero(mechanism.nv + 6 * more);
+}
 
 bool FlowTracker::compile(const Flow& flow, const FlowStep& from, Step& step) const {
-  if (from.kind == StepKind::spin || from.kind == StepKind::numerical) return false;
+  if (from.kind == StepKind::spin || !from.whole_loops.empty()) return false;
   step.kind = from.kind;
   step.given = from.given;
   step.unknowns = from.unknowns;
   if (from.kind == StepKind::joint) compile_joint(flow, from, step);
+  if (from.kind == StepKind::numerical) {
+    step.column.assign(variables_.size(), -1);
+    for (const std::uint32_t x : from.unknowns) {
+      step.column[x] = static_cast<std::int8_t>(step.size);
+      step.size += freedoms_of(variables_[x].kind);
+    }
+    if (step.size > most_unknowns || step.size != static_cast<Eigen::Index>(from.rows.size())) return false;
+  }
   for (const FlowRow& from_row : from.rows) {
     const LoopCut& cut = flow.cuts[from_row.cut];
     const Loop& loop = flow.loops.loops[cut.loop];
-    Row row{cut.conditions[from_row.condition], std::nullopt, lower_way(loop, variables_, cut),
-            upper_way(loop, variables_, cut)};
+    const Way lower = lower_way(loop, variables_, cut), upper = upper_way(loop, variables_, cut);
+    Row row{
+        cut.conditions[from_row.condition],
+        std::nullopt,
+        MovingWay(lower),
+        MovingWay(upper),
+        {value(cut.conditions[from_row.condition], lower.last), value(cut.conditions[from_row.condition], upper.last)}};
     const auto variables = with_last(from_row.variables, from.unknowns.back());
-    const bool small = variables.size() <= written_out || from.kind == StepKind::two_unknowns;
+    const bool small =
+        from.kind == StepKind::two_unknowns || (from.kind == StepKind::one_unknown && variables.size() <= written_out);
     if (small) {
       row.form = ProductForm::of(variables, variables_, length_, [&](std::span<const double> x) {
-        return openness(row.condition, row.lower, row.upper, places_at(variables_, variables, x), length_);
+        return openness(row.condition, lower, upper, places_at(variables_, variables, x), length_);
       });
     }
     if (from.kind == StepKind::two_unknowns && !row.form) return false;
@@ -82,7 +116,7 @@ bool FlowTracker::compile(const Flow& flow, const FlowStep& from, Step& step) co
 void FlowTracker::compile_joint(const Flow& flow, const FlowStep& from, Step& step) const {
   const LoopCut& cut = flow.cuts[from.cut];
   const Loop& loop = flow.loops.loops[cut.loop];
-  step.around = lower_way(loop, variables_, cut);
+  step.around = MovingWay(lower_way(loop, variables_, cut));
   step.unknowns.clear();
   for (std::size_t i = 0; i < cut.a.count; ++i) {
     const LoopMotion& motion = loop.motions[(cut.a.first + i) % loop.motions.size()];
@@ -93,13 +127,16 @@ void FlowTracker::compile_joint(const Flow& flow, const FlowStep& from, Step& st
 }
 
 void FlowTracker::find_sides(const Eigen::VectorXd& q, Sides& sides) {
-  Eigen::VectorXd copy = q;
-  q_ = &copy;
+  Eigen::VectorXd all = extended_[0];
+  all.conservativeResize(std::max(all.size(), q.size()));
+  all.head(q.size()) = q;
+  q_ = &all;
+  start_imaginary();
   for (std::uint32_t i = 0; i < variables_.size(); ++i) {
     if (variables_[i].kind == VariableKind::ball) {
-      std::copy_n(q.data() + variables_[i].q, 4, places_[i].at.begin());
+      place_ball(i, all.segment<4>(variables_[i].q));
     } else {
-      place(i, q[variables_[i].q]);
+      place(i, all[variables_[i].q]);
     }
   }
   for (std::size_t i = 0; i < steps_.size(); ++i) sides[i] = side_of(steps_[i]);
@@ -107,10 +144,31 @@ void FlowTracker::find_sides(const Eigen::VectorXd& q, Sides& sides) {
 
 bool FlowTracker::follow(Eigen::VectorXd& q, Eigen::VectorXd& v, Eigen::VectorXd& a, const Sides& sides,
                          TrackedAccuracy& accuracy) {
+  if (imaginary_.empty()) return follow(sides, accuracy, q, v, a);
+  const std::array<Eigen::VectorXd*, 3> own{&q, &v, &a};
+  for (std::size_t i = 0; i < 3; ++i) extended_[i].head(own[i]->size()) = *own[i];
+  if (!follow(sides, accuracy, extended_[0], extended_[1], extended_[2])) return false;
+  for (std::size_t i = 0; i < 3; ++i) *own[i] = extended_[i].head(own[i]->size());
+  return true;
+}
+
+/// Where the bodies of imaginary joints stand by the tree.
+void FlowTracker::start_imaginary() {
+  if (imaginary_.empty() || !forward_position(*mechanism_, q_->data(), kinematics_)) return;
+  for (const Imaginary& joint : imaginary_) {
+    const Pose pose = relative_pose(kinematics_.poses[joint.a], kinematics_.poses[joint.b]);
+    for (std::uint32_t k = 0; k < 3; ++k) (*q_)[variables_[joint.first + k].q] = pose.position[k];
+    q_->segment<4>(variables_[joint.first + 3].q) = quaternion_of_rotation<double>(pose.rotation);
+  }
+}
+
+bool FlowTracker::follow(const Sides& sides, TrackedAccuracy& accuracy, Eigen::VectorXd& q, Eigen::VectorXd& v,
+                         Eigen::VectorXd& a) {
   q_ = &q;
   v_ = &v;
   a_ = &a;
   accuracy_ = {};
+  start_imaginary();
   for (const std::uint32_t input : inputs_) {
     const Variable& variable = variables_[input];
     place(input, q[variable.q]);
@@ -127,8 +185,10 @@ bool FlowTracker::follow(Eigen::VectorXd& q, Eigen::VectorXd& v, Eigen::VectorXd
         if (!solve_two(step, sides[i])) return false;
         break;
       case StepKind::joint: read_joint(step); break;
-      case StepKind::spin:
-      case StepKind::numerical: return false;  // not compiled
+      case StepKind::numerical:
+        if (!solve_block(step, sides[i])) return false;
+        break;
+      case StepKind::spin: return false;  // not compiled
     }
   }
   accuracy = accuracy_;
@@ -152,6 +212,16 @@ void FlowTracker::place_turn(std::uint32_t variable, double x, double cosine, do
   places_[variable].at = {cosine, sine, 0.0, 0.0};
 }
 
+void FlowTracker::place_ball(std::uint32_t variable, const Vector4& quaternion) {
+  q_->segment<4>(variables_[variable].q) = quaternion;
+  std::copy(quaternion.begin(), quaternion.end(), places_[variable].at.begin());
+}
+
+void FlowTracker::set_ball_motion(std::uint32_t variable, const Vector3& v, const Vector3& a) {
+  v_->segment<3>(variables_[variable].v) = places_[variable].rate = v;
+  a_->segment<3>(variables_[variable].v) = places_[variable].acceleration = a;
+}
+
 void FlowTracker::set_motion(std::uint32_t variable, double v, double a) {
   (*v_)[variables_[variable].v] = v;
   (*a_)[variables_[variable].v] = a;
@@ -161,7 +231,7 @@ void FlowTracker::set_motion(std::uint32_t variable, double v, double a) {
 }
 
 void FlowTracker::take_error(std::uint32_t variable, double error) {
-  errors_[variable] = error * (variables_[variable].kind == VariableKind::slide ? length_ : 1.0);
+  errors_[variable] = error * unit(variable);
   accuracy_.coordinate_error = std::max(accuracy_.coordinate_error, error);
 }
 

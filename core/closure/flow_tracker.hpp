@@ -1,8 +1,9 @@
 // Following a moving mechanism by its solution flow: every coordinate with its rate and acceleration from closed forms,
-// or by Newton's method in one unknown or two, in the order of the flow. Nothing is allocated or factorised; of each
-// closed form the solution is taken that continues the motion.
+// or by Newton's method in the few unknowns of a block, in the order of the flow. Nothing is allocated; of each closed
+// form the solution is taken that continues the motion.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include "closure/flow.hpp"
 #include "closure/moving_walk.hpp"
 #include "closure/product_form.hpp"
+#include "mechanism/kinematics.hpp"
 #include "mechanism/mechanism.hpp"
 
 namespace koppel {
@@ -20,14 +22,14 @@ namespace koppel {
 /// What a step of the tracker tells of its accuracy, in the units of the report.
 struct TrackedAccuracy {
   double residual = 0.0;
-  double condition = 1.0;         ///< greatest ratio of a condition's amplitude to its slope in its unknown
+  double condition = 1.0;  ///< greatest ratio of a condition's amplitude to its slope in its unknown, or of a block
   double coordinate_error = 0.0;  ///< estimated, from rounding in the conditions carried through the flow
 };
 
 class FlowTracker {
  public:
-  /// Nothing if a step must be solved numerically or has a choice (a link that may spin), or if the inputs leave
-  /// freedoms.
+  /// Nothing if a block is large, or enters with whole loops, if a step has a choice (a link that may spin), or if the
+  /// inputs leave freedoms.
   static std::optional<FlowTracker> of(const Mechanism& mechanism, const Flow& flow);
 
   /// On which side of its singular positions each step stands in a closed position: the sign of the slope that it
@@ -50,28 +52,61 @@ class FlowTracker {
   struct Row {
     ClosureCondition condition;
     std::optional<ProductForm> form;
-    Way lower, upper;
+    MovingWay lower, upper;
+    std::array<double, 2> rigid{};  ///< the condition's values on ways without motions
   };
   struct Step {
     StepKind kind = StepKind::one_unknown;
     std::vector<std::uint32_t> unknowns;
     std::vector<std::uint32_t> given;
     std::vector<Row> rows;
-    Way around;                 ///< of a joint: from behind it to before it
-    bool against = false;       ///< of a joint: its slide points against its turn
-    std::vector<bool> inverse;  ///< of a joint: of each unknown that is a ball
+    MovingWay around;                 ///< of a joint: from behind it to before it
+    bool against = false;             ///< of a joint: its slide points against its turn
+    std::vector<bool> inverse;        ///< of a joint: of each unknown that is a ball
+    std::vector<std::int8_t> column;  ///< of a block: of each variable the first column, -1: given or not there
+    Eigen::Index size = 0;            ///< of a block
+  };
+  static constexpr int most_unknowns = 12;  ///< rates of a block
+  using BlockMatrix =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_unknowns, most_unknowns>;
+  using BlockVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_unknowns, 1>;
+  /// A walked condition: how far it is open, how fast given variables open it, and by how much it is uncertain; over
+  /// its size.
+  struct Linear {
+    double open = 0.0, given = 0.0, uncertain = 0.0;
+  };
+  struct BlockLinear {
+    explicit BlockLinear(Eigen::Index n) : open(n), given(n), uncertain(n) {}
+    BlockVector open, given, uncertain;
+  };
+  /// The bodies of an imaginary joint, and its coordinates.
+  struct Imaginary {
+    Node a = 0, b = 0;
+    std::uint32_t first = 0;  ///< variable
   };
   FlowTracker(const Mechanism& mechanism, const Flow& flow);
 
   bool compile(const Flow& flow, const FlowStep& from, Step& step) const;
   void compile_joint(const Flow& flow, const FlowStep& from, Step& step) const;
 
+  bool follow(const Sides& sides, TrackedAccuracy& accuracy, Eigen::VectorXd& q, Eigen::VectorXd& v,
+              Eigen::VectorXd& a);
   bool solve_one(const Step& step, std::int8_t side);
   bool solve_turn(const LastVariable& form, std::uint32_t variable);
   bool solve_slide(const LastVariable& form, std::uint32_t variable);
-  bool solve_form(const Row& row, std::uint32_t variable);
-  bool solve_walk(const Row& row, std::uint32_t variable);
+  bool solve_form(const Row& row, std::uint32_t variable, double& slope);
+  bool solve_walk(const Row& row, std::uint32_t variable, double& slope);
+  bool solve_harmonic(const Row& row, std::uint32_t variable);
+  bool solve_by_slopes(const Row& row, std::uint32_t variable);
   bool solve_two(const Step& step, std::int8_t side);
+  bool solve_block(const Step& step, std::int8_t side);
+  template <typename Unknown>
+  Linear linearise(const Row& row, const Unknown& unknown);
+  void linearise(const Step& step, BlockMatrix& jacobian, BlockLinear& at);
+  void shift_block(const Step& step, const BlockVector& by);
+  void set_block_motion(const Step& step, const BlockVector& v, const BlockVector& a);
+  double bending(const Row& row);
+  void start_imaginary();
   std::int8_t side_of(const Step& step);
   Eigen::Matrix2d jacobian_of(const Step& step) const;
   std::size_t steepest(const Step& step);
@@ -81,9 +116,11 @@ class FlowTracker {
   double slope(const Row& row, std::uint32_t variable);
   void place(std::uint32_t variable, double x);
   void place_turn(std::uint32_t variable, double x, double cosine, double sine);
+  void place_ball(std::uint32_t variable, const Vector4& quaternion);
   void set_motion(std::uint32_t variable, double v, double a);
+  void set_ball_motion(std::uint32_t variable, const Vector3& v, const Vector3& a);
+  double unit(std::uint32_t variable) const { return variables_[variable].kind == VariableKind::slide ? length_ : 1.0; }
   double error_through(const ProductForm& form, std::uint32_t unknown, double slope) const;
-  double error_through(const Row& row, std::uint32_t unknown, double slope) const;
   void take_error(std::uint32_t variable, double error);
 
   double length_ = 1.0;
@@ -93,7 +130,12 @@ class FlowTracker {
   // Of the call that is going on; of each variable.
   std::vector<CoordinateBasis> bases_;
   std::vector<MovingPlace> places_;
-  std::vector<double> errors_;  ///< [rad, m]; of balls none are carried on
+  std::vector<double> errors_;  ///< [rad, m]
+  const Mechanism* mechanism_ = nullptr;
+  std::vector<Imaginary> imaginary_;
+  Kinematics kinematics_;                    ///< tells where imaginary joints start
+  std::array<Eigen::VectorXd, 3> extended_;  ///< q, v, a, those of imaginary joints behind the mechanism's
+  std::vector<WayColumn<double>> columns_;
   Eigen::VectorXd *q_ = nullptr, *v_ = nullptr, *a_ = nullptr;
   TrackedAccuracy accuracy_;
 };

@@ -37,25 +37,12 @@ double FlowTracker::error_through(const ProductForm& form, std::uint32_t unknown
   return sum / std::abs(slope);
 }
 
-/// The same of a condition that is walked along: the greatest error that comes through, as they have common causes.
-double FlowTracker::error_through(const Row& row, std::uint32_t unknown, double slope) const {
-  const double size = size_of(row.condition, length_);
-  const double through = std::max(sensitivity(row.lower, places_, errors_, unknown, row.condition),
-                                  sensitivity(row.upper, places_, errors_, unknown, row.condition));
-  constexpr double roundings = 32.0;
-  return (roundings * eps + through / size) / std::abs(slope);
-}
-
 /// The condition's slope in a variable where that is placed, in radians or lengths.
 double FlowTracker::slope(const Row& row, std::uint32_t variable) {
-  if (row.form) {
-    const double unit = variables_[variable].kind == VariableKind::slide ? length_ : 1.0;
-    return unit * slope_in(row.form->last(bases_), bases_[variable]);
-  }
+  if (row.form) return unit(variable) * slope_in(row.form->last(bases_), bases_[variable]);
   const WaySlope lower = koppel::slope(row.lower, places_, variable),
                  upper = koppel::slope(row.upper, places_, variable);
-  const double unit = variables_[variable].kind == VariableKind::slide ? length_ : 1.0;
-  return unit / size_of(row.condition, length_) *
+  return unit(variable) / size_of(row.condition, length_) *
          (change(row.condition, lower.pose, lower.angular, lower.linear) -
           change(row.condition, upper.pose, upper.angular, upper.linear));
 }
@@ -84,9 +71,14 @@ std::int8_t FlowTracker::side_of(const Step& step) {
       return coded(slope(step.rows[row], step.unknowns[0]), row);
     }
     case StepKind::two_unknowns: return coded(jacobian_of(step).determinant(), 0);
+    case StepKind::numerical: {
+      BlockMatrix jacobian(step.size, step.size);
+      BlockLinear at(step.size);
+      linearise(step, jacobian, at);
+      return coded(Eigen::PartialPivLU<BlockMatrix>(jacobian).determinant(), 0);
+    }
     case StepKind::joint:
-    case StepKind::spin:
-    case StepKind::numerical: break;
+    case StepKind::spin: break;
   }
   return 1;
 }
@@ -97,18 +89,17 @@ bool FlowTracker::solve_one(const Step& step, std::int8_t side) {
   // The one that was steepest when the motion came here: another would have sides of its own.
   const Row& best = step.rows[static_cast<std::size_t>(std::abs(side)) - 1];
   errors_[x] = 0.0;
-  if (!(best.form ? solve_form(best, x) : solve_walk(best, x))) return false;
-  const double slope_here = slope(best, x);
-  if (!best.form) take_error(x, error_through(best, x, slope_here));
+  double slope_here = 0.0;
+  if (!(best.form ? solve_form(best, x, slope_here) : solve_walk(best, x, slope_here))) return false;
   return (slope_here < 0.0) == (side < 0);
 }
 
-bool FlowTracker::solve_form(const Row& row, std::uint32_t x) {
+bool FlowTracker::solve_form(const Row& row, std::uint32_t x, double& slope) {
   const LastVariable form = row.form->last(bases_);
   const bool turn = variables_[x].kind == VariableKind::turn;
   if (!(turn ? solve_turn(form, x) : solve_slide(form, x))) return false;
   const CoordinateBasis& b = bases_[x];
-  const double slope = slope_in(form, b);
+  slope = slope_in(form, b);
   // The condition stays met: its time derivatives vanish.
   const double moved = form.rate[0] + form.rate[1] * b.value[0] + form.rate[2] * b.value[1];
   const double v = -moved / slope;
@@ -155,49 +146,6 @@ bool FlowTracker::solve_slide(const LastVariable& form, std::uint32_t variable) 
   return true;
 }
 
-/// Newton's method along the walk, and the rates by its slope.
-bool FlowTracker::solve_walk(const Row& row, std::uint32_t x) {
-  const bool is_slide = variables_[x].kind == VariableKind::slide;
-  const double unit = is_slide ? length_ : 1.0, size = size_of(row.condition, length_);
-  double first_slope = 0.0, slope_here = 0.0, open = 0.0, moved = 0.0, last = 1.0;
-  for (int i = 0; i < most_iterations; ++i) {
-    const WaySlope lower = koppel::slope(row.lower, places_, x), upper = koppel::slope(row.upper, places_, x);
-    open = (value(row.condition, lower.pose) - value(row.condition, upper.pose)) / size;
-    slope_here = unit / size *
-                 (change(row.condition, lower.pose, lower.angular, lower.linear) -
-                  change(row.condition, upper.pose, upper.angular, upper.linear));
-    if (i == 0) first_slope = slope_here;
-    // As long as the slope hardly changes, the start belongs to this root.
-    if (!(std::abs(slope_here) > least_slope) ||
-        std::abs(slope_here - first_slope) > nearest_part * std::abs(first_slope)) {
-      return false;
-    }
-    const double change = -open / slope_here;
-    if (std::abs(change) <= 2.0 * eps || (i > 1 && std::abs(change) > 0.5 * last)) break;
-    last = std::abs(change);
-    moved += last;
-    if (!(moved <= largest_move)) return false;
-    place(x, (*q_)[variables_[x].q] + unit * change);
-  }
-  set_motion(x, 0.0, 0.0);
-  const auto rate_of = [&](const MovingPose& p) {
-    return change(row.condition, p.pose, p.angular_velocity, p.velocity) / size;
-  };
-  const double v =
-      -unit * (rate_of(moving_end(row.lower, places_)) - rate_of(moving_end(row.upper, places_))) / slope_here;
-  set_motion(x, v, 0.0);
-  const auto acceleration_of = [&](const MovingPose& p) {
-    return (change(row.condition, p.pose, p.angular_acceleration, p.acceleration) +
-            quadratic_change(row.condition, p.pose, p.angular_velocity, p.velocity)) /
-           size;
-  };
-  const double bent = acceleration_of(moving_end(row.lower, places_)) - acceleration_of(moving_end(row.upper, places_));
-  set_motion(x, v, -unit * bent / slope_here);
-  accuracy_.residual = std::max(accuracy_.residual, std::abs(open));
-  accuracy_.condition = std::max(accuracy_.condition, 1.0 / std::abs(slope_here));
-  return true;
-}
-
 /// Of two conditions by their unknowns, in radians or lengths.
 Eigen::Matrix2d FlowTracker::jacobian_of(const Step& step) const {
   Eigen::Matrix2d jacobian;
@@ -205,10 +153,9 @@ Eigen::Matrix2d FlowTracker::jacobian_of(const Step& step) const {
     const auto names = step.rows[k].form->variables();
     for (std::size_t i = 0; i < 2; ++i) {
       const std::uint32_t x = step.unknowns[i];
-      const double unit = variables_[x].kind == VariableKind::slide ? length_ : 1.0;
       const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), x) - names.begin());
       jacobian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) =
-          at == names.size() ? 0.0 : unit * step.rows[k].form->by(at, bases_);
+          at == names.size() ? 0.0 : unit(x) * step.rows[k].form->by(at, bases_);
     }
   }
   return jacobian;
@@ -217,7 +164,7 @@ Eigen::Matrix2d FlowTracker::jacobian_of(const Step& step) const {
 /// Two conditions in two unknowns: Newton's method, and the rates by the same Jacobian.
 bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
   const std::array<std::uint32_t, 2> x{step.unknowns[0], step.unknowns[1]};
-  std::array<double, 2> unit{};
+  std::array<double, 2> units{};
   Eigen::Matrix2d jacobian;
   Eigen::Vector2d open;
   const auto conditions = [&](std::size_t derivative) {
@@ -227,7 +174,7 @@ bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
   };
   const auto linearise = [&] { jacobian = jacobian_of(step); };
   for (std::size_t i = 0; i < 2; ++i) {
-    unit[i] = variables_[x[i]].kind == VariableKind::slide ? length_ : 1.0;
+    units[i] = unit(x[i]);
     errors_[x[i]] = 0.0;
     place(x[i], (*q_)[variables_[x[i]].q]);
     set_motion(x[i], 0.0, 0.0);
@@ -246,7 +193,7 @@ bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
     // Newton's method finds the root that continues the motion if the start lies well within the reach of its slopes.
     if (!(moved <= least_slope)) return false;
     for (std::size_t k = 0; k < 2; ++k) {
-      place(x[k], (*q_)[variables_[x[k]].q] + unit[k] * change[static_cast<Eigen::Index>(k)]);
+      place(x[k], (*q_)[variables_[x[k]].q] + units[k] * change[static_cast<Eigen::Index>(k)]);
     }
   }
   if ((jacobian.determinant() < 0.0) != (side < 0)) return false;
@@ -257,12 +204,12 @@ bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
                                   error_through(*step.rows[1].form, x[0], 1.0));
   conditions(1);
   const Eigen::Vector2d v = -inverse * open;
-  for (std::size_t i = 0; i < 2; ++i) set_motion(x[i], unit[i] * v[static_cast<Eigen::Index>(i)], 0.0);
+  for (std::size_t i = 0; i < 2; ++i) set_motion(x[i], units[i] * v[static_cast<Eigen::Index>(i)], 0.0);
   conditions(2);
   const Eigen::Vector2d a = -inverse * open;
   for (std::size_t i = 0; i < 2; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    set_motion(x[i], unit[i] * v[k], unit[i] * a[k]);
+    set_motion(x[i], units[i] * v[k], units[i] * a[k]);
     take_error(x[i], inverse.row(k).cwiseAbs().dot(uncertain));
   }
   return true;
@@ -270,11 +217,11 @@ bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
 
 /// The walk leads from behind the joint to before it, so that it shows the joint's motion backwards.
 void FlowTracker::read_joint(const Step& step) {
-  const MovingPose before = moving_end(step.around, places_);
+  const MovingPose before = step.around.end(places_);
   // What the worst of the given coordinates leaves.
   double error = 32.0 * eps;
   for (const std::uint32_t v : step.given) {
-    error = std::max(error, errors_[v] / (variables_[v].kind == VariableKind::slide ? length_ : 1.0));
+    error = std::max(error, errors_[v] / unit(v));
   }
   for (std::size_t i = 0; i < step.unknowns.size(); ++i) {
     const std::uint32_t x = step.unknowns[i];
@@ -307,18 +254,13 @@ void FlowTracker::read_ball(const MovingPose& before, bool inverse, std::uint32_
   const Matrix3 to_outlet = inverse ? Matrix3(before.pose.rotation) : Matrix3(before.pose.rotation.transpose());
   Vector4 quaternion = quaternion_of_rotation<double>(to_outlet);
   if (quaternion.dot(q_->segment<4>(variable.q)) < 0.0) quaternion = -quaternion;
-  q_->segment<4>(variable.q) = quaternion;
-  std::copy(quaternion.begin(), quaternion.end(), places_[x].at.begin());
-  MovingPlace& place = places_[x];
+  place_ball(x, quaternion);
   if (inverse) {
-    place.rate = before.pose.rotation.transpose() * before.angular_velocity;
-    place.acceleration = before.pose.rotation.transpose() * before.angular_acceleration;
+    set_ball_motion(x, before.pose.rotation.transpose() * before.angular_velocity,
+                    before.pose.rotation.transpose() * before.angular_acceleration);
   } else {
-    place.rate = -before.angular_velocity;
-    place.acceleration = -before.angular_acceleration;
+    set_ball_motion(x, -before.angular_velocity, -before.angular_acceleration);
   }
-  v_->segment<3>(variable.v) = place.rate;
-  a_->segment<3>(variable.v) = place.acceleration;
 }
 
 }  // namespace koppel

@@ -1,0 +1,224 @@
+// The steps of a FlowTracker whose conditions many coordinates enter: they are walked along. One unknown, or a block of
+// as many conditions as unknowns that is solved together by Newton's method; with rates and accelerations.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include "closure/flow_tracker.hpp"
+#include "spatial/quaternion.hpp"
+#include "spatial/rotation_vector.hpp"
+
+namespace koppel {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr int most_iterations = 8;
+constexpr double largest_move = 0.35;    // from the start values, in radians or lengths
+constexpr double least_slope = 0.03;     // of a condition over its size
+constexpr double all_but_solved = 1e-9;  // a correction whose square, times what bends, is rounding
+// Where other branches cannot be near: as Closing has it.
+constexpr double surely_nearest = 0.25;
+constexpr double well_conditioned = 1e3;
+
+}  // namespace
+
+/// A condition where its variables stand. unknown(column, by): takes over the derivative by an unknown, per rad or m;
+/// false: it is none.
+template <typename Unknown>
+FlowTracker::Linear FlowTracker::linearise(const Row& row, const Unknown& unknown) {
+  const double over_size = 1.0 / size_of(row.condition, length_);
+  Linear at;
+  double ball = 0.0;  // what a turn about any axis may do
+  for (const bool upper : {false, true}) {
+    const MovingWay& way = upper ? row.upper : row.lower;
+    const double sign = upper ? -over_size : over_size;
+    if (way.size() == 0) {
+      at.open += sign * row.rigid[upper];
+      continue;
+    }
+    columns_.clear();
+    const Pose end = way.walk(places_, [&](const WayColumn<double>& c) { columns_.push_back(c); });
+    at.open += sign * value(row.condition, end);
+    for (const WayColumn<double>& c : columns_) {
+      const double by = sign * change(row.condition, end, c.angular, c.velocity(end.position));
+      if (unknown(c, by)) continue;
+      at.given += by * places_[c.variable].rate[c.rate];
+      ball = c.rate == 0 ? std::abs(by) : ball + std::abs(by);
+      // The greatest that comes through: errors have common causes.
+      at.uncertain = std::max(at.uncertain, ball * errors_[c.variable]);
+    }
+  }
+  constexpr double roundings = 8.0;
+  at.uncertain += roundings * eps;
+  return at;
+}
+
+bool FlowTracker::solve_walk(const Row& row, std::uint32_t x, double& slope) {
+  const bool harmonic = row.condition.type != ClosureType::point_line || variables_[x].kind == VariableKind::slide;
+  if (!(harmonic ? solve_harmonic(row, x) : solve_by_slopes(row, x))) return false;
+  const double unit = this->unit(x);
+  slope = 0.0;
+  const Linear at = linearise(row, [&](const WayColumn<double>& c, double by) {
+    if (c.variable == x) slope += unit * by;
+    return c.variable == x;
+  });
+  if (!(std::abs(slope) > least_slope)) return false;
+  place(x, (*q_)[variables_[x].q] - unit * at.open / slope);  // what rounding has left
+  const double v = -unit * at.given / slope;
+  set_motion(x, v, 0.0);
+  set_motion(x, v, -unit * bending(row) / slope);
+  accuracy_.residual = std::max(accuracy_.residual, std::abs(at.open));
+  accuracy_.condition = std::max(accuracy_.condition, 1.0 / std::abs(slope));
+  take_error(x, at.uncertain / std::abs(slope));
+  return true;
+}
+
+/// A condition is a harmonic of a turn, or a parabola of a slide: value, slope and second derivative tell all of it.
+bool FlowTracker::solve_harmonic(const Row& row, std::uint32_t x) {
+  std::array<double, 3> f{};
+  for (const bool upper : {false, true}) {
+    const double over_size = (upper ? -1.0 : 1.0) / size_of(row.condition, length_);
+    const MovingWay& way = upper ? row.upper : row.lower;
+    if (way.size() == 0) {
+      f[0] += over_size * row.rigid[upper];
+      continue;
+    }
+    const WaySlope at = koppel::slope(way, places_, x);
+    f[0] += over_size * value(row.condition, at.pose);
+    f[1] += over_size * change(row.condition, at.pose, at.angular, at.linear);
+    f[2] += over_size * (change(row.condition, at.pose, Vector3::Zero().eval(), at.angular.cross(at.linear).eval()) +
+                         quadratic_change(row.condition, at.pose, at.angular, at.linear));
+  }
+  LastVariable form;
+  if (variables_[x].kind == VariableKind::turn) {
+    const auto [cosine, sine] = bases_[x].value;
+    form.value = {f[0] + f[2], -f[2] * cosine - f[1] * sine, -f[2] * sine + f[1] * cosine};
+    return solve_turn(form, x);
+  }
+  const double start = (*q_)[variables_[x].q], half = 0.5 * f[2];
+  form.value = {f[0] - start * (f[1] - start * half), f[1] - 2.0 * half * start, half};
+  return solve_slide(form, x);
+}
+
+/// Newton's method; as long as the slope hardly changes, the start belongs to this root.
+bool FlowTracker::solve_by_slopes(const Row& row, std::uint32_t x) {
+  const double unit = this->unit(x), size = size_of(row.condition, length_);
+  double first_slope = 0.0, moved = 0.0, last = 1.0;
+  for (int i = 0; i < most_iterations; ++i) {
+    const WaySlope lower = koppel::slope(row.lower, places_, x), upper = koppel::slope(row.upper, places_, x);
+    const double open = (value(row.condition, lower.pose) - value(row.condition, upper.pose)) / size;
+    const double slope = unit / size *
+                         (change(row.condition, lower.pose, lower.angular, lower.linear) -
+                          change(row.condition, upper.pose, upper.angular, upper.linear));
+    if (i == 0) first_slope = slope;
+    if (!(std::abs(slope) > least_slope) || std::abs(slope - first_slope) > surely_nearest * std::abs(first_slope)) {
+      return false;
+    }
+    const double change = -open / slope;
+    if (std::abs(change) <= 2.0 * eps || (i > 1 && std::abs(change) > 0.5 * last)) break;
+    last = std::abs(change);
+    moved += last;
+    if (!(moved <= largest_move)) return false;
+    place(x, (*q_)[variables_[x].q] + unit * change);
+  }
+  return true;
+}
+
+/// Of all conditions of a block by its unknowns, in radians or lengths.
+void FlowTracker::linearise(const Step& step, BlockMatrix& jacobian, BlockLinear& at) {
+  jacobian.setZero();
+  for (Eigen::Index k = 0; k < step.size; ++k) {
+    const Linear row = linearise(step.rows[static_cast<std::size_t>(k)], [&](const WayColumn<double>& c, double by) {
+      const int column = step.column[c.variable];
+      if (column >= 0) jacobian(k, column + c.rate) += unit(c.variable) * by;
+      return column >= 0;
+    });
+    at.open[k] = row.open;
+    at.given[k] = row.given;
+    at.uncertain[k] = row.uncertain;
+  }
+}
+
+void FlowTracker::shift_block(const Step& step, const BlockVector& by) {
+  for (const std::uint32_t x : step.unknowns) {
+    const Eigen::Index column = step.column[x];
+    if (variables_[x].kind != VariableKind::ball) {
+      place(x, (*q_)[variables_[x].q] + unit(x) * by[column]);
+      continue;
+    }
+    const Vector4 turn = quaternion_of_rotation_vector<double>(Vector3(by.segment<3>(column)));
+    place_ball(x, quaternion_product<double>(q_->segment<4>(variables_[x].q), turn).normalized());
+  }
+}
+
+void FlowTracker::set_block_motion(const Step& step, const BlockVector& v, const BlockVector& a) {
+  for (const std::uint32_t x : step.unknowns) {
+    const Eigen::Index column = step.column[x];
+    if (variables_[x].kind == VariableKind::ball) {
+      set_ball_motion(x, v.segment<3>(column), a.segment<3>(column));
+    } else {
+      set_motion(x, unit(x) * v[column], unit(x) * a[column]);
+    }
+  }
+}
+
+/// The second time derivative of a condition, by the motions as they are set.
+double FlowTracker::bending(const Row& row) {
+  const auto of_way = [&](const MovingWay& way) {
+    const MovingPose p = way.end(places_);
+    return change(row.condition, p.pose, p.angular_acceleration, p.acceleration) +
+           quadratic_change(row.condition, p.pose, p.angular_velocity, p.velocity);
+  };
+  const double lower = row.lower.size() == 0 ? 0.0 : of_way(row.lower);
+  const double upper = row.upper.size() == 0 ? 0.0 : of_way(row.upper);
+  return (lower - upper) / size_of(row.condition, length_);
+}
+
+bool FlowTracker::solve_block(const Step& step, std::int8_t side) {
+  BlockMatrix jacobian(step.size, step.size);
+  BlockLinear at(step.size);
+  BlockVector change(step.size);
+  Eigen::PartialPivLU<BlockMatrix> factors(step.size);
+  for (const std::uint32_t x : step.unknowns) {
+    if (variables_[x].kind == VariableKind::ball) {
+      place_ball(x, q_->segment<4>(variables_[x].q));
+    } else {
+      place(x, (*q_)[variables_[x].q]);
+    }
+  }
+  double moved = 0.0, last = 1.0;
+  for (int i = 0;; ++i) {
+    linearise(step, jacobian, at);
+    factors.compute(jacobian);
+    if (last <= all_but_solved) break;
+    change = factors.solve(-at.open);
+    last = change.lpNorm<Eigen::Infinity>();
+    moved += last;
+    if (!(moved <= largest_move) || i == most_iterations) return false;
+    shift_block(step, change);
+  }
+  const BlockMatrix inverse = factors.inverse();
+  const double stretch = inverse.norm(), condition = jacobian.norm() * stretch;
+  if (!(condition <= well_conditioned && moved * stretch <= surely_nearest)) return false;
+  if ((factors.determinant() < 0.0) != (side < 0)) return false;
+  accuracy_.residual = std::max(accuracy_.residual, at.open.lpNorm<Eigen::Infinity>());
+  accuracy_.condition = std::max(accuracy_.condition, condition);
+  shift_block(step, -(inverse * at.open));  // what rounding has left
+
+  const BlockVector v = -(inverse * at.given);
+  set_block_motion(step, v, BlockVector::Zero(step.size));
+  for (Eigen::Index k = 0; k < step.size; ++k) at.open[k] = bending(step.rows[static_cast<std::size_t>(k)]);
+  set_block_motion(step, v, -(inverse * at.open));
+  for (const std::uint32_t x : step.unknowns) {
+    double error = 0.0;
+    for (Eigen::Index i = 0; i < freedoms_of(variables_[x].kind); ++i) {
+      error = std::max(error, inverse.row(step.column[x] + i).cwiseAbs().dot(at.uncertain));
+    }
+    take_error(x, error);
+  }
+  return true;
+}
+
+}  // namespace koppel

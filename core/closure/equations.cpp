@@ -1,7 +1,9 @@
 #include "closure/equations.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/QR>
 
@@ -29,11 +31,28 @@ std::string input_text(const Mechanism& mechanism, std::uint32_t i) {
   return "drive " + input.name + " of type " + input.type->name + " (" + input.type->origin + ")";
 }
 
-/// Rates whose twist S rates is nearest to the given one.
+/// Rates whose twist S rates is nearest to the given one. Columns across each other, as most joints have them, need no
+/// factorisation.
 void rates_of_twist(const Subspace& s, const Vector6& twist, double* rates) {
-  if (s.cols() == 0) return;
+  constexpr double across = 4.0 * std::numeric_limits<double>::epsilon();
+  const Eigen::Index n = s.cols();
+  std::array<double, 6> square{};
+  bool orthogonal = true;
+  for (Eigen::Index i = 0; i < n && orthogonal; ++i) {
+    square[static_cast<std::size_t>(i)] = s.col(i).squaredNorm();
+    orthogonal = square[static_cast<std::size_t>(i)] > 0.0;
+    for (Eigen::Index j = 0; j < i && orthogonal; ++j) {
+      const double sizes = square[static_cast<std::size_t>(i)] * square[static_cast<std::size_t>(j)];
+      const double product = s.col(i).dot(s.col(j));
+      orthogonal = product * product <= across * across * sizes;
+    }
+  }
+  if (orthogonal) {
+    for (Eigen::Index i = 0; i < n; ++i) rates[i] = s.col(i).dot(twist) / square[static_cast<std::size_t>(i)];
+    return;
+  }
   const Eigen::ColPivHouseholderQR<Subspace> qr(s);
-  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>>(rates, s.cols()) = qr.solve(twist);
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>>(rates, n) = qr.solve(twist);
 }
 
 }  // namespace
@@ -154,19 +173,24 @@ bool Equations::evaluate_constraint(const Relation& relation, Local& local) {
 void Equations::relation_jacobian(std::size_t index, double* block) const {
   const Relation& relation = mechanism.relations[index];
   const Local& local = locals_[index];
+  const std::size_t count = relation.coupled.size(), stride = relation.path.size() + count;
   const Matrix3 to_b = local.b.rotation.transpose();
-  for (std::uint32_t k = 0; k < relation.rows; ++k) {
-    const Eigen::Map<const Eigen::Matrix<double, 1, 6>> row(local.by_twist.data() + std::size_t{6} * k);
-    const double scale = mechanism.row_scale[relation.first_row + k];
-    const Vector3 about = scale * (row.head<3>() * to_b).transpose();
-    const Vector3 along = scale * (row.tail<3>() * to_b).transpose();
-    for (const PathRate& path : relation.path) {
-      const Column& c = kinematics.columns[path.rate];
-      const Vector3 velocity = c.linear + c.angular.cross(local.b.position - c.point);
-      *block++ = path.sign * (about.dot(c.angular) + along.dot(velocity));
+  double* column = block;
+  for (const PathRate& path : relation.path) {
+    const Column& c = kinematics.columns[path.rate];
+    const Vector3 angular = path.sign * (to_b * c.angular);
+    const Vector3 linear = path.sign * (to_b * (c.linear + c.angular.cross(local.b.position - c.point)));
+    for (std::uint32_t k = 0; k < relation.rows; ++k) {
+      const double* row = local.by_twist.data() + std::size_t{6} * k;
+      column[k * stride] = mechanism.row_scale[relation.first_row + k] *
+                           (row[0] * angular[0] + row[1] * angular[1] + row[2] * angular[2] + row[3] * linear[0] +
+                            row[4] * linear[1] + row[5] * linear[2]);
     }
-    const std::size_t count = relation.coupled.size();
-    for (std::size_t j = 0; j < count; ++j) *block++ = scale * local.by_rate[k * count + j];
+    ++column;
+  }
+  for (std::uint32_t k = 0; k < relation.rows; ++k) {
+    const double scale = mechanism.row_scale[relation.first_row + k];
+    for (std::size_t j = 0; j < count; ++j) column[k * stride + j] = scale * local.by_rate[k * count + j];
   }
 }
 

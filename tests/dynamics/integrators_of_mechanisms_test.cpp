@@ -45,11 +45,12 @@ TEST(IntegratorsOfMechanisms, SingularPositionsAreCrossedAtAnyTolerance) {
 TEST(IntegratorsOfMechanisms, FixedStepsKeepTheirOrders) {
   // Of the rate: it starts upright, without acceleration, so that positions of the semi-implicit method are those of
   // leap frog, and of order 2.
-  Simulated reference(scene("nfourbar"), by(IntegratorKind::dop853, 1e-10, 0.0, 1.0));
-  reference.to(1.0);
+  constexpr double end = 0.375;  // before the bars lie flat, where rounding counts more than orders
+  Simulated reference(scene("nfourbar"), by(IntegratorKind::dop853, 1e-12, 0.0, end));
+  reference.to(end);
   const auto error = [&](IntegratorKind kind, double step) {
-    Simulated run(scene("nfourbar"), by(kind, 0.0, step, 1.0));
-    run.to(1.0);
+    Simulated run(scene("nfourbar"), by(kind, 0.0, step, end));
+    run.to(end);
     return std::abs(run.v("bar0.angle") - reference.v("bar0.angle"));
   };
   const auto slope = [&](IntegratorKind kind, double step) {
@@ -96,8 +97,8 @@ TEST(IntegratorsOfMechanisms, CvodeTakesStiffForcesInFewSteps) {
   EXPECT_TRUE(explicit_.simulation->summary().stiff);
 }
 
-/// The same without the damper swings 50 times in a step: what is too quick for the step fades by a tenth each, with the
-/// square of their number where three modes do so together.
+/// The same without the damper swings 50 times in a step: what is too quick for the step fades by a tenth each, with
+/// the square of their number where three modes do so together.
 TEST(IntegratorsOfMechanisms, GeneralisedAlphaTakesStiffForcesInLongSteps) {
   std::string springs = stiff;
   springs.erase(springs.find("damping"));

@@ -64,9 +64,11 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, do
       }
       const bool unreachable = report != nullptr && report->verdict == koppel::Verdict::unreachable;
       e.code = unreachable ? Code::unreachable : status == KOPPEL_RETRY ? Code::retry_smaller : Code::not_closed;
-      e.message = unreachable ? "there is no closed position at time " + number(time) +
-                                    " s: all solutions of the closure equations are known, and none is real"
-                              : "no closed position found at time " + number(time) + " s";
+      const std::string where =
+          "time " + number(time) + " s" + (m.with_start_held ? " that keeps the fixed start values" : "");
+      e.message = unreachable ? "there is no closed position at " + where +
+                                    ": all solutions of the closure equations are known, and none is real"
+                              : "no closed position found at " + where;
       if (report != nullptr && std::isfinite(report->residual) && report->open_row < m.equation_names.size()) {
         e.message += std::string(unreachable ? "; at best" : ":") + " `" + m.equation_names[report->open_row].name +
                      "` stays open by " + number(report->residual) + " (radians, or metres over the length " +
@@ -77,6 +79,7 @@ koppel_status explain_failure(koppel_status status, const koppel::Work& work, do
                      ? "move the inputs in smaller steps"
                      : "give `start` values near a known position, or check lengths and inputs: the "
                        "mechanism may not reach this position";
+      if (m.with_start_held) e.advice += "; or fix fewer start values";
       break;
     }
     case KOPPEL_SINGULAR:

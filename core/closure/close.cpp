@@ -135,6 +135,22 @@ void subtract_driven(Work& work, const Eigen::VectorXd& rates) {
   }
 }
 
+/// Closes with the start values held that are fixed, so that the others give way.
+koppel_status close_with_start_held(const Work& work, State& state, const CloseOptions& options, Report& report) {
+  const auto& held = work.mechanism->with_start_held;
+  Work of_held(held);
+  State closed(*held);
+  closed.q = state.q;
+  closed.time = state.time;
+  closed.input.head(state.input.size()) = state.input;
+  for (std::size_t i = work.mechanism->inputs.size(); i < held->inputs.size(); ++i) {
+    closed.input[static_cast<Eigen::Index>(i)] = state.q[held->inputs[i].q];
+  }
+  const koppel_status status = close(of_held, closed, options, report);
+  if (status >= 0) state.q = closed.q;
+  return status;
+}
+
 }  // namespace
 
 bool is_closed(const Mechanism& mechanism, const State& state) {
@@ -156,7 +172,18 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
       return describe(work, report);
     }
   }
+  std::uint32_t iterations = 0;
+  if (!tracking && mechanism.with_start_held) {
+    const koppel_status status = close_with_start_held(work, state, options, report);
+    if (status < 0) {
+      report.open_row = mechanism.rows;  // none of these equations
+      return status;
+    }
+    iterations = report.iterations;
+    report = Report{};
+  }
   Closing closing(work, state, options, report);
+  report.iterations = iterations;
   const bool closed = options.method == Method::flow ? closing.by_flow()
                       : tracking                     ? closing.follow()
                                                      : closing.assemble();

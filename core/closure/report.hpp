@@ -14,7 +14,7 @@ struct Report {
   std::uint32_t iterations = 0;          ///< of all solvers together
   std::uint32_t rank = 0;                ///< of the equations with respect to the unknowns
   double residual = 0.0;                 ///< greatest scaled equation; of a failure: the least that was reached
-  std::uint32_t open_row = 0;            ///< of a failure: the equation that stayed open most there
+  std::uint32_t open_row = 0;            ///< of a failure: the equation that stayed open most there; rows: none of them
   double condition = 1.0;                ///< ratio of extreme singular values that count, estimated
   double coordinate_error = 0.0;         ///< estimated greatest error of an unknown, in radians' size
   std::uint32_t change_points = 0;       ///< that were passed

@@ -1,4 +1,5 @@
 #include "dynamics/cvode.hpp"
+
 #include <cvode/cvode.h>
 
 #include "dynamics/sundials.hpp"

@@ -9,6 +9,7 @@ namespace koppel {
 namespace {
 
 constexpr double runaway = 1e9;  // [rad/s, m/s]: nothing moves so fast but what is integrated in too long steps
+constexpr double fixed_rate_met = 1e-10;  // part of a fixed start rate, or radians a second, that rounding may take
 
 }  // namespace
 
@@ -61,38 +62,69 @@ std::string Simulation::remedy() const {
   return look + ", or a force that is too stiff: for such there is the integrator cvode";
 }
 
-/// The independent rates that come nearest to what is asked for.
-bool Simulation::take_rates(const State& state) {
+/// Independent rates that give fixed start rates and, among those, come nearest to what else is asked for.
+Result<void> Simulation::take_rates(const State& state) {
   const bool known = state.stage >= Stage::velocities;
-  std::vector<std::uint32_t> asked;
+  std::vector<std::uint32_t> fixed, asked;
   for (const StateBlock& block : mechanism_->blocks) {
-    const bool given = mechanism_->joints[block.joint.index()].blocks[block.block].described.start_rate.has_value();
+    const CoordinateDescription& about = mechanism_->joints[block.joint.index()].blocks[block.block].described;
+    const bool given = about.start_rate.has_value();
     for (std::uint32_t v = block.v; v < block.v + rate_count(block.kind); ++v) {
-      if (mechanism_->column_of_rate[v] >= 0 && (known || given)) asked.push_back(v);
+      const std::int32_t column = mechanism_->column_of_rate[v];
+      const bool driven = column >= static_cast<std::int32_t>(mechanism_->unknowns);
+      if (!known && given && about.fixed && !driven)
+        fixed.push_back(v);
+      else if (column >= 0 && (known || given))
+        asked.push_back(v);
     }
   }
   const auto f = static_cast<Eigen::Index>(motion_.independent().size());
   Eigen::VectorXd rates = Eigen::VectorXd::Zero(f);
-  if (!motion_.velocities(rates)) return false;
+  if (!motion_.velocities(rates)) return stuck(state.time);
   const Eigen::VectorXd rest = motion_.v();
-  Eigen::MatrixXd lever(asked.size(), f);
-  Eigen::VectorXd wish(asked.size());
-  const auto weight = [&](std::uint32_t v) { return 1.0 / mechanism_->rate_scale[v]; };
+  Eigen::MatrixXd all(mechanism_->nv, f);
   for (Eigen::Index i = 0; i < f; ++i) {
-    if (!motion_.velocities(Eigen::VectorXd::Unit(f, i))) return false;
-    for (std::size_t k = 0; k < asked.size(); ++k) {
-      lever(static_cast<Eigen::Index>(k), i) = weight(asked[k]) * (motion_.v()[asked[k]] - rest[asked[k]]);
+    if (!motion_.velocities(Eigen::VectorXd::Unit(f, i))) return stuck(state.time);
+    all.col(i) = motion_.v() - rest;
+  }
+  const auto weight = [&](std::uint32_t v) { return 1.0 / mechanism_->rate_scale[v]; };
+  const auto lever = [&](const std::vector<std::uint32_t>& of) {
+    Eigen::MatrixXd rows(of.size(), f);
+    for (std::size_t k = 0; k < of.size(); ++k) rows.row(static_cast<Eigen::Index>(k)) = weight(of[k]) * all.row(of[k]);
+    return rows;
+  };
+  const auto wish = [&](const std::vector<std::uint32_t>& of) {
+    Eigen::VectorXd values(of.size());
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      values[static_cast<Eigen::Index>(k)] = weight(of[k]) * (state.v[of[k]] - rest[of[k]]);
     }
+    return values;
+  };
+  Eigen::MatrixXd free = Eigen::MatrixXd::Identity(f, f);  // what fixed rates leave
+  if (f > 0 && !fixed.empty()) {
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> hard(lever(fixed));
+    rates = hard.solve(wish(fixed));
+    const Eigen::MatrixXd across = hard.pseudoInverse() * lever(fixed);
+    free = (free - across).eval();  // projects
   }
-  for (std::size_t k = 0; k < asked.size(); ++k) {
-    wish[static_cast<Eigen::Index>(k)] = weight(asked[k]) * (state.v[asked[k]] - rest[asked[k]]);
+  if (f > 0 && !asked.empty()) {
+    const Eigen::MatrixXd soft = lever(asked) * free;
+    rates += free * soft.completeOrthogonalDecomposition().solve(wish(asked) - lever(asked) * rates);
   }
-  if (f > 0 && !asked.empty()) rates = lever.completeOrthogonalDecomposition().solve(wish);
-  if (!motion_.velocities(rates)) return false;
+  if (!motion_.velocities(rates)) return stuck(state.time);
+  for (const std::uint32_t v : fixed) {
+    const double got = motion_.v()[v], wanted = state.v[v];
+    if (weight(v) * std::abs(got - wanted) <= fixed_rate_met * (1.0 + weight(v) * std::abs(wanted))) continue;
+    return tl::make_unexpected(make_error(Code::inputs_inconsistent, "coordinate " + mechanism_->rate_names[v].name,
+                                          "has the fixed start rate " + std::to_string(wanted) +
+                                              ", and the loops, the drives and other " + "fixed rates give it " +
+                                              std::to_string(got),
+                                          "fix fewer start rates: others then follow as nearly as they can"));
+  }
   for (const std::uint32_t v : asked) {
     summary_.start_change = std::max(summary_.start_change, weight(v) * std::abs(motion_.v()[v] - state.v[v]));
   }
-  return true;
+  return {};
 }
 
 /// An energy of the size of those that will come: what is there, or a fall through the mechanism's length.
@@ -116,8 +148,8 @@ double Simulation::pull() const {
 
 Result<void> Simulation::start(const State& state) {
   summary_ = {};
-  if (!equation_->start(state.q, state.v, state.time, state.internal, y_) || !take_rates(state))
-    return stuck(state.time);
+  if (!equation_->start(state.q, state.v, state.time, state.internal, y_)) return stuck(state.time);
+  KOPPEL_CHECK(take_rates(state));
   const Eigen::VectorXd v = motion_.v(), q = motion_.q();
   if (!equation_->start(q, v, state.time, state.internal, y_)) return stuck(state.time);
   EquationsOfMotion::Energy energy;

@@ -40,8 +40,8 @@ class Simulation {
                                                 const SimulationOptions& options);
 
   /// From a closed state. Its rates are taken as they are, if they belong to it; else those that the scene asks for,
-  /// as nearly as the loops allow, and of what nobody asks for the least. Errors: simulation_stuck, massless,
-  /// plugin_misbehaved.
+  /// as nearly as the loops allow, fixed ones before others, and of what nobody asks for the least. Errors:
+  /// simulation_stuck, massless, plugin_misbehaved; inputs_inconsistent: a fixed rate cannot be met.
   Result<void> start(const State& state);
 
   /// On to a time not before the last one. state: there, with all rates and accelerations. On an error it is as before,
@@ -69,7 +69,7 @@ class Simulation {
   std::string remedy() const;
   double energy_scale(double kinetic) const;
   double pull() const;
-  bool take_rates(const State& state);
+  Result<void> take_rates(const State& state);
   Result<void> step(double limit);
   Result<void> go_to(double time);
   bool judge();

@@ -12,10 +12,10 @@ namespace koppel {
 /// Builds one Mechanism, part by part; each part only needs those before it.
 class Compiler {
  public:
-  Compiler(const Scene& scene, Diagnostics& diagnostics)
-      : scene_(scene), diagnostics_(diagnostics), mechanism_(new Mechanism) {}
+  Compiler(const Scene& scene, Diagnostics& diagnostics, bool start_held)
+      : scene_(scene), diagnostics_(diagnostics), start_held_(start_held), mechanism_(new Mechanism) {}
 
-  Result<std::shared_ptr<const Mechanism>> run() {
+  Result<std::unique_ptr<Mechanism>> run() {
     copy_settings();
     KOPPEL_CHECK(build_joints());
     KOPPEL_CHECK(build_inputs());
@@ -31,7 +31,7 @@ class Compiler {
     m().records_loads = std::any_of(m().records.begin(), m().records.end(), [](const RecordDescription& record) {
       return record.subject == RecordSubject::joint_load || record.quantity == Quantity::effort;
     });
-    return std::shared_ptr<const Mechanism>(std::move(mechanism_));
+    return std::move(mechanism_);
   }
 
  private:
@@ -87,7 +87,19 @@ class Compiler {
       m().inputs.push_back(
           {drive.name, drive.of, joint.q + block.q, joint.v + block.v, drive.type, std::move(*instance)});
     }
+    if (start_held_) hold_start();
     return {};
+  }
+
+  void hold_start() {
+    for (const StateBlock& block : m().blocks) {
+      const CoordinateDescription& described = m().joints[block.joint.index()].blocks[block.block].described;
+      if (!described.fixed || !described.start || driven_[block.v]) continue;
+      const CoordinateReference of{block.joint, block.block};
+      claim(of);
+      driven_[block.v] = true;
+      m().inputs.push_back({"start of " + m().coordinate_names[block.q].name, of, block.q, block.v, nullptr, {}});
+    }
   }
 
   Result<void> build_constraints() {
@@ -323,6 +335,7 @@ class Compiler {
 
   const Scene& scene_;
   Diagnostics& diagnostics_;
+  bool start_held_ = false;
   std::unique_ptr<Mechanism> mechanism_;
   std::vector<bool> must_stay_;  ///< joints whose coordinates are used and so must be unknowns or inputs
   std::vector<bool> driven_;     ///< by rate
@@ -331,7 +344,16 @@ class Compiler {
 };
 
 Result<std::shared_ptr<const Mechanism>> compile(const Scene& scene, Diagnostics& diagnostics) {
-  return Compiler(scene, diagnostics).run();
+  KOPPEL_TRY(std::unique_ptr<Mechanism> mechanism, Compiler(scene, diagnostics, false).run());
+  const bool fixed = std::any_of(scene.joints.begin(), scene.joints.end(), [](const JointDescription& joint) {
+    return std::any_of(joint.coordinates.begin(), joint.coordinates.end(),
+                       [](const CoordinateDescription& c) { return c.fixed && c.start; });
+  });
+  if (fixed) {
+    Diagnostics said_already;
+    KOPPEL_TRY(mechanism->with_start_held, Compiler(scene, said_already, true).run());
+  }
+  return std::shared_ptr<const Mechanism>(std::move(mechanism));
 }
 
 const Relation* Mechanism::cut_at(JointId joint) const {

@@ -78,7 +78,7 @@ struct Force {
   std::uint32_t first_state = 0;    ///< of its internal states among those of all forces
 };
 
-/// A driven coordinate with its function of time.
+/// A driven coordinate with its function of time; without a type it is held where the state's input has it.
 struct Input {
   std::string name;
   CoordinateReference of;
@@ -129,6 +129,9 @@ class Mechanism {
   std::vector<Joint> joints;
   std::vector<Constraint> constraints;
   std::vector<Input> inputs;
+  /// The same mechanism with the coordinates whose start values are fixed as further inputs, behind the others: for its
+  /// first closing. Null: there are none.
+  std::shared_ptr<const Mechanism> with_start_held;
   std::vector<Force> forces;
   Eigen::VectorXd internal_start;  ///< internal states of all forces, where they start
   std::vector<RecordDescription> records;

@@ -49,6 +49,7 @@ const Input* set_time(const Mechanism& mechanism, double time, State& state) {
   for (const bool write : {false, true}) {
     for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
       const Input& input = mechanism.inputs[i];
+      if (input.type == nullptr) continue;
       std::array<double, 3> out;
       out.fill(std::nan(""));
       const void* instance = input.instance.get();

@@ -57,6 +57,7 @@ class Stream {
     }
     add(coordinate.start_rate.has_value());
     if (coordinate.start_rate) add(*coordinate.start_rate);
+    if (coordinate.fixed) add(std::string_view("fixed"));
   }
   template <typename Item>
   void add(const std::vector<Item>& items) {

@@ -1,4 +1,6 @@
 // [[joint]]: where it sits, and what is said of its coordinates.
+#include <algorithm>
+
 #include "scene/coordinate_reader.hpp"
 #include "scene/frame_reader.hpp"
 #include "scene/type_values.hpp"
@@ -152,6 +154,33 @@ void read_coordinate_settings(Reading& reading, const Element& element, TableRea
   });
 }
 
+/// `fixed`: names of coordinates whose start values must hold.
+void read_fixed(TableReader& table, JointDescription& joint) {
+  const Node* node = table.find("fixed");
+  const ValueReader& values = table.values();
+  if (node == nullptr || !values.is_list(*node, "`fixed`", 1, unbounded, "write the names of coordinates")) return;
+  for (const Node& item : node->items) {
+    const auto name = values.text(item, "an entry of `fixed`");
+    if (!name) continue;
+    const auto& blocks = joint.type->blocks;
+    const auto block = std::find_if(blocks.begin(), blocks.end(), [&](const Block& b) { return b.name == *name; });
+    if (block == blocks.end()) {
+      table.report().error(Code::unknown_coordinate, item.place, "the joint has no coordinate " + quote(*name),
+                           coordinates_text(*joint.type));
+      continue;
+    }
+    CoordinateDescription& coordinate = joint.coordinates[static_cast<std::size_t>(block - blocks.begin())];
+    if (!is_scalar(block->kind)) {
+      table.report().error(Code::not_scalar, item.place,
+                           "`fixed` is for lengths and angles; " + quote(*name) + " is neither");
+    } else if (!coordinate.start && !coordinate.start_rate) {
+      table.report().error(Code::missing_key, item.place, quote(*name) + " is fixed, and nothing says where",
+                           "give it a `start`, a `start_rate` or both");
+    }
+    coordinate.fixed = true;
+  }
+}
+
 }  // namespace
 
 void read_joint(Reading& reading, const Element& element) {
@@ -170,11 +199,12 @@ void read_joint(Reading& reading, const Element& element) {
     }
   }
   joint.type = find_type<JointType>(reading, scope, table, "", &Registry::joint);
-  if (joint.type == nullptr) return table.finish_without_type({"zero", "start", "start_rate", "limits"});
+  if (joint.type == nullptr) return table.finish_without_type({"zero", "start", "start_rate", "limits", "fixed"});
   joint.coordinates.resize(joint.type->blocks.size());
   reading.starts[element.index].resize(joint.type->blocks.size());
   joint.values = read_values(reading, scope, table, *joint.type, placement.to_inlet).values;
   read_coordinate_settings(reading, element, table, joint);
+  read_fixed(table, joint);
   table.finish();
 }
 

@@ -44,6 +44,7 @@ struct CoordinateDescription {
   std::optional<std::vector<double>> start;       ///< where the first closure starts
   std::optional<std::array<double, 2>> limits;    ///< scalars only
   std::optional<std::vector<double>> start_rate;  ///< with which a simulation starts
+  bool fixed = false;                             ///< start and start_rate, where given, hold; scalars only
 };
 
 struct JointDescription {

@@ -100,8 +100,8 @@ bool GeneralisedAlpha::reach(double h) {
   if (!loops_.residual(before_ + h, to_.u, unknowns_rate_, to_.lambda, no_mu_, missing_)) return false;
   to_.power = -missing_[2 * n + s];
   // What the unknowns shall bring to zero, at the front: balance, states, conditions as accelerations.
-  missing_.head(n + s) = missing_.segment(n, n + s).eval();
-  missing_.segment(n + s, m) = missing_.segment(2 * n + s + 1, m).eval() / (beta * h * h);
+  for (Eigen::Index i = 0; i < n + s; ++i) missing_[i] = missing_[n + i];
+  for (Eigen::Index i = 0; i < m; ++i) missing_[n + s + i] = missing_[2 * n + s + 1 + i] / (beta * h * h);
   return true;
 }
 
@@ -189,7 +189,7 @@ StepStatus GeneralisedAlpha::step(double limit) {
   from_ = to_;
   before_ = time_;
   y_before_ = y_;
-  y_slope_.resize(0);
+  slope_known_ = false;
   const double rest = limit - time_;
   const bool last = rest <= step_ * (1.0 + same_step);
   time_ = last ? limit : time_ + step_;
@@ -217,7 +217,8 @@ void GeneralisedAlpha::interpolate(double t, Eigen::VectorXd& y) {
     return;
   }
   const double h = time_ - before_, part = (t - before_) / h;
-  if (y_slope_.size() != y_.size() && !loops_.rate(before_, y_before_, y_slope_)) y_slope_ = (y_ - y_before_) / h;
+  if (!slope_known_ && !loops_.rate(before_, y_before_, y_slope_)) y_slope_ = (y_ - y_before_) / h;
+  slope_known_ = true;
   y = y_before_ + part * h * y_slope_ + part * part * (y_ - y_before_ - h * y_slope_);
 }
 

@@ -50,6 +50,7 @@ class GeneralisedAlpha final : public Integrator {
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
   double jacobian_step_ = 0.0;  ///< [s] for which it holds; 0: there is none
   double length_ = 0.0;         ///< [s] of the last step
+  bool slope_known_ = false;    ///< y_slope_ is where the last step began
 };
 
 }  // namespace koppel

@@ -84,7 +84,7 @@ bool FlowTracker::compile(const Flow& flow, const FlowStep& from, Step& step) co
   if (from.kind == StepKind::numerical) {
     step.column.assign(variables_.size(), -1);
     for (const std::uint32_t x : from.unknowns) {
-      step.column[x] = static_cast<std::int8_t>(step.size);
+      step.column[x] = static_cast<int>(step.size);
       step.size += freedoms_of(variables_[x].kind);
     }
     if (step.size > most_unknowns || step.size != static_cast<Eigen::Index>(from.rows.size())) return false;

@@ -60,11 +60,11 @@ class FlowTracker {
     std::vector<std::uint32_t> unknowns;
     std::vector<std::uint32_t> given;
     std::vector<Row> rows;
-    MovingWay around;                 ///< of a joint: from behind it to before it
-    bool against = false;             ///< of a joint: its slide points against its turn
-    std::vector<bool> inverse;        ///< of a joint: of each unknown that is a ball
-    std::vector<std::int8_t> column;  ///< of a block: of each variable the first column, -1: given or not there
-    Eigen::Index size = 0;            ///< of a block
+    MovingWay around;           ///< of a joint: from behind it to before it
+    bool against = false;       ///< of a joint: its slide points against its turn
+    std::vector<bool> inverse;  ///< of a joint: of each unknown that is a ball
+    std::vector<int> column;    ///< of a block: of each variable the first column, -1: given or not there
+    Eigen::Index size = 0;      ///< of a block
   };
   static constexpr int most_unknowns = 12;  ///< rates of a block
   using BlockMatrix =

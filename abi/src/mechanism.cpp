@@ -1,5 +1,7 @@
 #include "mechanism/mechanism.hpp"
 
+#include <algorithm>
+
 #include "boundary.hpp"
 #include "closure/explain.hpp"
 #include "closure/explain_flow.hpp"
@@ -123,6 +125,23 @@ koppel_status koppel_mechanism_unit(const koppel_mechanism* mechanism, int32_t k
                                     size_t size, size_t* needed) {
   if (!has(mechanism, kind, index)) return KOPPEL_INVALID_ARGUMENT;
   return koppel::write_text(unit_of(*mechanism->mechanism, kind, index), text, size, needed);
+}
+
+koppel_status koppel_mechanism_start(const koppel_mechanism* mechanism, size_t coordinate, int32_t* wish,
+                                     double* value) {
+  if (mechanism == nullptr || wish == nullptr || value == nullptr) return KOPPEL_INVALID_ARGUMENT;
+  const koppel::Mechanism& m = *mechanism->mechanism;
+  if (coordinate >= m.nq) return KOPPEL_INVALID_ARGUMENT;
+  *wish = KOPPEL_START_FREE;
+  for (const koppel::StateBlock& block : m.blocks) {
+    if (coordinate < block.q || coordinate >= block.q + koppel::coordinate_count(block.kind)) continue;
+    const auto& described = m.joints[block.joint.index()].blocks[block.block].described;
+    const bool driven = std::any_of(m.inputs.begin(), m.inputs.end(), [&](const auto& x) { return x.q == coordinate; });
+    if (!described.start || driven) break;
+    *wish = described.fixed ? KOPPEL_START_FIXED : KOPPEL_START_PREFERRED;
+    *value = (*described.start)[coordinate - block.q];
+  }
+  return KOPPEL_OK;
 }
 
 koppel_status koppel_mechanism_find(const koppel_mechanism* mechanism, int32_t kind, const char* name, size_t* index,

@@ -1,4 +1,6 @@
 // koppel check SCENE
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -54,6 +56,40 @@ std::optional<koppel_freedoms> freedoms_of(const AtStart& start) {
   return freedoms;
 }
 
+/// A start value that gave way.
+struct Moved {
+  std::string name, unit;
+  double wished = 0.0, found = 0.0;
+
+  double by() const { return std::abs(found - wished); }
+};
+
+/// Those that closing changed by more than how they are written down, the greatest change first.
+std::vector<Moved> moved(const Model& model, const AtStart& start) {
+  constexpr double written = 1e-6;
+  std::vector<double> q(model.sizes().coordinates);
+  std::vector<Moved> all;
+  if (!start.closed || koppel_state_get(start.motion.state.get(), KOPPEL_Q, q.data(), q.size()) < 0) return all;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    std::int32_t wish = KOPPEL_START_FREE;
+    double value = 0.0;
+    koppel_mechanism_start(model.mechanism.get(), i, &wish, &value);
+    if (wish == KOPPEL_START_FREE || std::abs(q[i] - value) <= written) continue;
+    all.push_back({model.name(KOPPEL_KIND_COORDINATE, i), model.unit(KOPPEL_KIND_COORDINATE, i), value, q[i]});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Moved& a, const Moved& b) { return a.by() > b.by(); });
+  return all;
+}
+
+void print_moved(const std::vector<Moved>& all) {
+  constexpr std::size_t most = 5;
+  for (std::size_t i = 0; i < std::min(all.size(), most); ++i) {
+    std::printf("%s %s from %.6g to %.6g %s\n", i == 0 ? "moved      " : "           ", all[i].name.c_str(),
+                all[i].wished, all[i].found, all[i].unit.c_str());
+  }
+  if (all.size() > most) std::printf("            and %zu more start values, by less\n", all.size() - most);
+}
+
 void print_text(const Model& model, const AtStart& start) {
   const koppel_sizes sizes = model.sizes();
   const std::string title = model.name(KOPPEL_KIND_SCENE, 1);
@@ -65,6 +101,7 @@ void print_text(const Model& model, const AtStart& start) {
   if (start.closed) {
     std::printf("at t = 0    closed: residual %.1e, coordinates within %.1e, %u iterations, condition %.3g\n",
                 start.report.residual, start.report.coordinate_error, start.report.iterations, start.report.condition);
+    print_moved(moved(model, start));
   } else {
     std::puts("at t = 0    not closed");
   }
@@ -102,6 +139,10 @@ void add_start(nlohmann::ordered_json& document, const Model& model, const AtSta
     document["coordinate_error"] = start.report.coordinate_error;
     document["condition"] = start.report.condition;
     document["iterations"] = start.report.iterations;
+    document["moved"] = nlohmann::ordered_json::array();
+    for (const Moved& each : moved(model, start)) {
+      document["moved"].push_back({{"coordinate", each.name}, {"from", each.wished}, {"to", each.found}});
+    }
   }
 }
 

@@ -96,6 +96,11 @@ static void describes_itself(const koppel_mechanism* mechanism) {
   CHECK(strcmp(text, "rack.displacement") == 0);
   CHECK_OK(koppel_mechanism_unit(mechanism, KOPPEL_KIND_INPUT, index, text, sizeof text, NULL));
   CHECK(strcmp(text, "m") == 0);
+  int32_t wish = -1;
+  double value = -1.0;
+  CHECK_OK(koppel_mechanism_start(mechanism, 0, &wish, &value));
+  CHECK(wish >= KOPPEL_START_FREE && wish <= KOPPEL_START_FIXED);
+  CHECK(koppel_mechanism_start(mechanism, sizes.coordinates, &wish, &value) == KOPPEL_INVALID_ARGUMENT);
   CHECK_OK(koppel_mechanism_explain(mechanism, text, sizeof text, &needed));
   uint32_t equations = 0;
   for (uint32_t i = 0; i < sizes.loops + sizes.constraints; ++i) {

@@ -56,6 +56,22 @@ class Usage(ProgramTest):
 
 
 class Check(ProgramTest):
+    def test_start_values_that_give_way_are_told_and_fixed_ones_do_not(self):
+        text = (SCENES / "dynamics" / "fourbar_free.toml").read_text()
+        wished = text.replace("start = { angle = 0.7 }", "start = { angle = 0.9 }")
+        self.assertNotEqual(wished, text)
+        document = self.json(FINE, "check", self.write("wished.toml", wished))
+        crank = next(each for each in document["moved"] if each["coordinate"] == "crank.angle")
+        self.assertEqual(crank["from"], 0.9)
+        self.assertGreater(abs(crank["to"] - 0.9), 0.01)
+        changes = [abs(each["to"] - each["from"]) for each in document["moved"]]
+        self.assertEqual(changes, sorted(changes, reverse=True))
+        self.assertIn("crank.angle from 0.9 to", self.expect(FINE, "koppel", "check", "wished.toml").stdout)
+        fixed = wished.replace("start = { angle = 0.9 }", "start = { angle = 0.9 }\nfixed = ['angle']")
+        moved = self.json(FINE, "check", self.write("fixed.toml", fixed))["moved"]
+        self.assertNotIn("crank.angle", [each["coordinate"] for each in moved])
+        self.assertEqual(self.json(FINE, "check", SCENES / "dynamics" / "fourbar_free.toml")["moved"], [])
+
     def test_a_good_scene_shows_its_freedoms(self):
         result = self.expect(FINE, "koppel", "check", self.write("scene.toml", FOURBAR))
         self.assertIn("mobility", result.stdout)

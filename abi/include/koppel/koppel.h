@@ -161,6 +161,12 @@ KOPPEL_EXPORT koppel_status koppel_mechanism_unit(const koppel_mechanism* mechan
 KOPPEL_EXPORT koppel_status koppel_mechanism_find(const koppel_mechanism* mechanism, int32_t kind, const char* name,
                                                   size_t* index, koppel_error* error);
 
+/* What the scene wishes of a coordinate at the start. */
+enum { KOPPEL_START_FREE = 0, KOPPEL_START_PREFERRED = 1, KOPPEL_START_FIXED = 2 };
+/* value [rad, m]: untouched if the coordinate is free, or driven. */
+KOPPEL_EXPORT koppel_status koppel_mechanism_start(const koppel_mechanism* mechanism, size_t coordinate, int32_t* wish,
+                                                   double* value);
+
 enum { KOPPEL_CUT_JOINT = 1, KOPPEL_CUT_BODY = 2, KOPPEL_CUT_NONE = 3 };
 
 /* One block of closure equations: a loop (the first `loops` of them), or a constraint. */

@@ -45,7 +45,7 @@ std::optional<FlowTracker> FlowTracker::of(const Mechanism& mechanism, const Flo
     Step step;
     if (!tracker.compile(flow, from, step)) return std::nullopt;
     for (const Row& row : step.rows) {
-      most_columns = std::max({most_columns, 3 * row.lower.size(), 3 * row.upper.size()});
+      most_columns = std::max({most_columns, 3 * row.lower.legs.size(), 3 * row.upper.legs.size()});
     }
     tracker.steps_.push_back(std::move(step));
   }
@@ -92,19 +92,18 @@ bool FlowTracker::compile(const Flow& flow, const FlowStep& from, Step& step) co
   for (const FlowRow& from_row : from.rows) {
     const LoopCut& cut = flow.cuts[from_row.cut];
     const Loop& loop = flow.loops.loops[cut.loop];
-    const Way lower = lower_way(loop, variables_, cut), upper = upper_way(loop, variables_, cut);
-    Row row{
-        cut.conditions[from_row.condition],
-        std::nullopt,
-        MovingWay(lower),
-        MovingWay(upper),
-        {value(cut.conditions[from_row.condition], lower.last), value(cut.conditions[from_row.condition], upper.last)}};
+    Row row{cut.conditions[from_row.condition],
+            std::nullopt,
+            lower_way(loop, variables_, cut),
+            upper_way(loop, variables_, cut),
+            {}};
+    row.rigid = {value(row.condition, row.lower.last), value(row.condition, row.upper.last)};
     const auto variables = with_last(from_row.variables, from.unknowns.back());
     const bool small =
         from.kind == StepKind::two_unknowns || (from.kind == StepKind::one_unknown && variables.size() <= written_out);
     if (small) {
       row.form = ProductForm::of(variables, variables_, length_, [&](std::span<const double> x) {
-        return openness(row.condition, lower, upper, places_at(variables_, variables, x), length_);
+        return openness(row.condition, row.lower, row.upper, places_at(variables_, variables, x), length_);
       });
     }
     if (from.kind == StepKind::two_unknowns && !row.form) return false;
@@ -116,7 +115,7 @@ bool FlowTracker::compile(const Flow& flow, const FlowStep& from, Step& step) co
 void FlowTracker::compile_joint(const Flow& flow, const FlowStep& from, Step& step) const {
   const LoopCut& cut = flow.cuts[from.cut];
   const Loop& loop = flow.loops.loops[cut.loop];
-  step.around = MovingWay(lower_way(loop, variables_, cut));
+  step.around = lower_way(loop, variables_, cut);
   step.unknowns.clear();
   for (std::size_t i = 0; i < cut.a.count; ++i) {
     const LoopMotion& motion = loop.motions[(cut.a.first + i) % loop.motions.size()];
@@ -127,8 +126,7 @@ void FlowTracker::compile_joint(const Flow& flow, const FlowStep& from, Step& st
 }
 
 void FlowTracker::find_sides(const Eigen::VectorXd& q, Sides& sides) {
-  Eigen::VectorXd all = extended_[0];
-  all.conservativeResize(std::max(all.size(), q.size()));
+  Eigen::VectorXd all(std::max(extended_[0].size(), q.size()));
   all.head(q.size()) = q;
   q_ = &all;
   start_imaginary();
@@ -144,12 +142,16 @@ void FlowTracker::find_sides(const Eigen::VectorXd& q, Sides& sides) {
 
 bool FlowTracker::follow(Eigen::VectorXd& q, Eigen::VectorXd& v, Eigen::VectorXd& a, const Sides& sides,
                          TrackedAccuracy& accuracy) {
-  if (imaginary_.empty()) return follow(sides, accuracy, q, v, a);
   const std::array<Eigen::VectorXd*, 3> own{&q, &v, &a};
-  for (std::size_t i = 0; i < 3; ++i) extended_[i].head(own[i]->size()) = *own[i];
-  if (!follow(sides, accuracy, extended_[0], extended_[1], extended_[2])) return false;
-  for (std::size_t i = 0; i < 3; ++i) *own[i] = extended_[i].head(own[i]->size());
-  return true;
+  const bool extends = !imaginary_.empty();
+  for (std::size_t i = 0; extends && i < 3; ++i) extended_[i].head(own[i]->size()) = *own[i];
+  q_ = extends ? &extended_[0] : &q;
+  v_ = extends ? &extended_[1] : &v;
+  a_ = extends ? &extended_[2] : &a;
+  const bool followed = follow_steps(sides);
+  for (std::size_t i = 0; extends && i < 3; ++i) *own[i] = extended_[i].head(own[i]->size());
+  accuracy = accuracy_;
+  return followed;
 }
 
 /// Where the bodies of imaginary joints stand by the tree.
@@ -162,17 +164,13 @@ void FlowTracker::start_imaginary() {
   }
 }
 
-bool FlowTracker::follow(const Sides& sides, TrackedAccuracy& accuracy, Eigen::VectorXd& q, Eigen::VectorXd& v,
-                         Eigen::VectorXd& a) {
-  q_ = &q;
-  v_ = &v;
-  a_ = &a;
+bool FlowTracker::follow_steps(const Sides& sides) {
   accuracy_ = {};
   start_imaginary();
   for (const std::uint32_t input : inputs_) {
     const Variable& variable = variables_[input];
-    place(input, q[variable.q]);
-    set_motion(input, v[variable.v], a[variable.v]);
+    place(input, (*q_)[variable.q]);
+    set_motion(input, (*v_)[variable.v], (*a_)[variable.v]);
     errors_[input] = 0.0;
   }
   for (std::size_t i = 0; i < steps_.size(); ++i) {
@@ -191,7 +189,6 @@ bool FlowTracker::follow(const Sides& sides, TrackedAccuracy& accuracy, Eigen::V
       case StepKind::spin: return false;  // not compiled
     }
   }
-  accuracy = accuracy_;
   constexpr double closed = 1e-13;
   return std::isfinite(accuracy_.coordinate_error) && accuracy_.residual <= closed;
 }

@@ -52,7 +52,7 @@ class FlowTracker {
   struct Row {
     ClosureCondition condition;
     std::optional<ProductForm> form;
-    MovingWay lower, upper;
+    Way lower, upper;
     std::array<double, 2> rigid{};  ///< the condition's values on ways without motions
   };
   struct Step {
@@ -60,7 +60,7 @@ class FlowTracker {
     std::vector<std::uint32_t> unknowns;
     std::vector<std::uint32_t> given;
     std::vector<Row> rows;
-    MovingWay around;           ///< of a joint: from behind it to before it
+    Way around;                 ///< of a joint: from behind it to before it
     bool against = false;       ///< of a joint: its slide points against its turn
     std::vector<bool> inverse;  ///< of a joint: of each unknown that is a ball
     std::vector<int> column;    ///< of a block: of each variable the first column, -1: given or not there
@@ -89,8 +89,7 @@ class FlowTracker {
   bool compile(const Flow& flow, const FlowStep& from, Step& step) const;
   void compile_joint(const Flow& flow, const FlowStep& from, Step& step) const;
 
-  bool follow(const Sides& sides, TrackedAccuracy& accuracy, Eigen::VectorXd& q, Eigen::VectorXd& v,
-              Eigen::VectorXd& a);
+  bool follow_steps(const Sides& sides);
   bool solve_one(const Step& step, std::int8_t side);
   bool solve_turn(const LastVariable& form, std::uint32_t variable);
   bool solve_slide(const LastVariable& form, std::uint32_t variable);

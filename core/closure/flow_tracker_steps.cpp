@@ -217,7 +217,7 @@ bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
 
 /// The walk leads from behind the joint to before it, so that it shows the joint's motion backwards.
 void FlowTracker::read_joint(const Step& step) {
-  const MovingPose before = step.around.end(places_);
+  const MovingPose before = moving_end(step.around, places_);
   // What the worst of the given coordinates leaves.
   double error = 32.0 * eps;
   for (const std::uint32_t v : step.given) {

@@ -32,14 +32,19 @@ FlowTracker::Linear FlowTracker::linearise(const Row& row, const Unknown& unknow
   Linear at;
   double ball = 0.0;  // what a turn about any axis may do
   for (const bool upper : {false, true}) {
-    const MovingWay& way = upper ? row.upper : row.lower;
+    const Way& way = upper ? row.upper : row.lower;
     const double sign = upper ? -over_size : over_size;
-    if (way.size() == 0) {
+    if (way.legs.empty()) {
       at.open += sign * row.rigid[upper];
       continue;
     }
     columns_.clear();
-    const Pose end = way.walk(places_, [&](const WayColumn<double>& c) { columns_.push_back(c); });
+    Pose end;
+    for (const Leg& leg : way.legs) {
+      end = end * leg.to;
+      pass(leg, places_[leg.variable].at, end, &columns_);
+    }
+    end = end * way.last;
     at.open += sign * value(row.condition, end);
     for (const WayColumn<double>& c : columns_) {
       const double by = sign * change(row.condition, end, c.angular, c.velocity(end.position));
@@ -80,8 +85,8 @@ bool FlowTracker::solve_harmonic(const Row& row, std::uint32_t x) {
   std::array<double, 3> f{};
   for (const bool upper : {false, true}) {
     const double over_size = (upper ? -1.0 : 1.0) / size_of(row.condition, length_);
-    const MovingWay& way = upper ? row.upper : row.lower;
-    if (way.size() == 0) {
+    const Way& way = upper ? row.upper : row.lower;
+    if (way.legs.empty()) {
       f[0] += over_size * row.rigid[upper];
       continue;
     }
@@ -166,13 +171,13 @@ void FlowTracker::set_block_motion(const Step& step, const BlockVector& v, const
 
 /// The second time derivative of a condition, by the motions as they are set.
 double FlowTracker::bending(const Row& row) {
-  const auto of_way = [&](const MovingWay& way) {
-    const MovingPose p = way.end(places_);
+  const auto of_way = [&](const Way& way) {
+    const MovingPose p = moving_end(way, places_);
     return change(row.condition, p.pose, p.angular_acceleration, p.acceleration) +
            quadratic_change(row.condition, p.pose, p.angular_velocity, p.velocity);
   };
-  const double lower = row.lower.size() == 0 ? 0.0 : of_way(row.lower);
-  const double upper = row.upper.size() == 0 ? 0.0 : of_way(row.upper);
+  const double lower = row.lower.legs.empty() ? 0.0 : of_way(row.lower);
+  const double upper = row.upper.legs.empty() ? 0.0 : of_way(row.upper);
   return (lower - upper) / size_of(row.condition, length_);
 }
 

@@ -48,13 +48,13 @@ bool ConstrainedEquation::stand(double time, const Eigen::VectorXd& u) {
 }
 
 bool ConstrainedEquation::spread(double time, const Eigen::VectorXd& u, Eigen::VectorXd& y) {
-  if (!stand(time, u)) return false;
+  const bool stands = stand(time, u);
   const Eigen::Index others = sizes().states + 1;
   y.resize(size());
   y.head(rates_) = delta_;
   write(rates_now_, y);
   y.tail(others) = u.tail(others);
-  return true;
+  return stands;
 }
 
 bool ConstrainedEquation::begin(double time, const Eigen::VectorXd& y, Eigen::VectorXd& u_rate,

@@ -92,6 +92,7 @@ void Elimination::choose(const std::vector<double>& values, const std::vector<do
 void Elimination::lay_out() {
   dependent_.clear();
   independent_.clear();
+  kept_.clear();
   left_out_.clear();
   lower_.clear();
   upper_.clear();
@@ -106,7 +107,7 @@ void Elimination::lay_out() {
     if (of_column_[i] == none) independent_.push_back(i);
   }
   for (std::uint32_t i = 0; i < pattern_.rows(); ++i) {
-    if (!used[i]) left_out_.push_back(i);
+    (used[i] ? kept_ : left_out_).push_back(i);
   }
   std::vector<std::vector<std::uint32_t>> upper(pivots_.size());
   for (std::size_t k = 0; k < pivots_.size(); ++k) {

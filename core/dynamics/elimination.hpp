@@ -39,7 +39,8 @@ class Elimination {
   /// Choosable columns that are not dependent, ascending.
   const std::vector<std::uint32_t>& independent() const { return independent_; }
   const std::vector<std::uint32_t>& dependent() const { return dependent_; }  ///< in the order of the pivots
-  const std::vector<std::uint32_t>& left_out() const { return left_out_; }    ///< rows
+  const std::vector<std::uint32_t>& kept() const { return kept_; }            ///< rows with a pivot, ascending
+  const std::vector<std::uint32_t>& left_out() const { return left_out_; }    ///< the other rows
 
   /// Factorises with the pivots as chosen. Returns the least ratio of a pivot to the greatest entry that stands beside
   /// it, 0 if one vanishes or is not finite: then nothing can be solved.
@@ -74,7 +75,7 @@ class Elimination {
   std::uint32_t choosable_ = 0;
   std::vector<Pivot> pivots_;
   double margin_ = 1.0;
-  std::vector<std::uint32_t> dependent_, independent_, left_out_;
+  std::vector<std::uint32_t> dependent_, independent_, kept_, left_out_;
   std::vector<Entry> lower_, upper_;      ///< rows of L left of the diagonal; rows of U, R over the pivot
   std::vector<double> inverse_;           ///< of the pivots
   std::vector<std::uint32_t> of_column_;  ///< pivot of a dependent column, else `none`

@@ -105,11 +105,6 @@ bool EquationsOfMotion::choose(const Eigen::VectorXd& q, double time) {
   for (const std::uint32_t column : elimination_.independent()) {
     independent_.push_back(mechanism_->rate_of_column[column]);
   }
-  conditions_.clear();
-  for (std::uint32_t row = 0; row < mechanism_->rows; ++row) {
-    const auto& out = elimination_.left_out();
-    if (std::find(out.begin(), out.end(), row) == out.end()) conditions_.push_back(row);
-  }
   const auto f = static_cast<Eigen::Index>(independent_.size());
   transfer_.resize(mechanism_->columns, f);
   inertial_.resize(mechanism_->nv, f);

@@ -42,7 +42,7 @@ class EquationsOfMotion {
   /// Chooses independent coordinates by their values at a position, which need not be closed. False: a plugin failed.
   bool choose(const Eigen::VectorXd& q, double time);
   /// Closure equations (rows) that do not follow from others there, ascending.
-  const std::vector<std::uint32_t>& conditions() const { return conditions_; }
+  const std::vector<std::uint32_t>& conditions() const { return elimination_.kept(); }
   /// Rates (in v) that are independent, ascending.
   const std::vector<std::uint32_t>& independent() const { return independent_; }
 
@@ -155,7 +155,7 @@ class EquationsOfMotion {
   State inputs_;              ///< only its inputs count
   Eigen::Matrix3Xd offsets_;  ///< of the inputs
   Eigen::VectorXd pushed_;
-  std::vector<std::uint32_t> independent_, conditions_;
+  std::vector<std::uint32_t> independent_;
   double time_ = 0.0, conditioning_ = 1.0, pull_ = 0.0;
   Obstacle obstacle_ = Obstacle::none;
   bool force_failed_ = false, held_ = false;

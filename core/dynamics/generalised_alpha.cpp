@@ -16,7 +16,7 @@ constexpr double beta = 0.25 * (gamma + 0.5) * (gamma + 0.5);
 
 // Of the scales: for difference quotients, coarse enough for joints whose derivatives are differences, too.
 const double nudge = std::cbrt(std::numeric_limits<double>::epsilon());
-constexpr double solved = 1e-13;  // of the scales: what is still to come of the iteration
+constexpr double solved = 1e-13;  // a correction, as a part of what moves: the one after it is rounding
 constexpr double rounded = 1e-8;  // below this corrections that do not shrink are noise, by a new Jacobian
 constexpr double slow = 0.3;      // part of its size that a correction leaves: beyond it the Jacobian is made anew
 constexpr int most_iterations = 20;

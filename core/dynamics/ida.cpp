@@ -164,7 +164,7 @@ void Ida::interpolate(double t, Eigen::VectorXd& y) {
   }
   polynomial.at(t, moved_);
   u_ = moved_.head(sizes_.unknowns());
-  if (!loops_.spread(t, u_, y)) y = y_;
+  loops_.spread(t, u_, y);  // where it cannot stand, whoever reads it there is told
 }
 
 bool Ida::shorten(double t) {

@@ -11,6 +11,32 @@ namespace {
 constexpr double runaway = 1e9;  // [rad/s, m/s]: nothing moves so fast but what is integrated in too long steps
 constexpr double fixed_rate_met = 1e-10;  // part of a fixed start rate, or radians a second, that rounding may take
 
+/// x that meets hard x = met as nearly as can be, then soft x = wished as nearly as that leaves, and is least then.
+Eigen::VectorXd nearest_rates(const Eigen::MatrixXd& hard, const Eigen::VectorXd& met, const Eigen::MatrixXd& soft,
+                              const Eigen::VectorXd& wished) {
+  const Eigen::Index f = hard.cols();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(f);
+  Eigen::MatrixXd free = Eigen::MatrixXd::Identity(f, f);
+  if (hard.rows() > 0) {
+    const Eigen::MatrixXd inverse = hard.completeOrthogonalDecomposition().pseudoInverse();
+    x = inverse * met;
+    free -= inverse * hard;
+  }
+  if (soft.rows() > 0) {
+    const Eigen::MatrixXd left = soft * free;
+    x += free * left.completeOrthogonalDecomposition().solve(wished - soft * x);
+  }
+  return x;
+}
+
+tl::unexpected<Error> unmet_rate(const std::string& name, double wanted, double got) {
+  return tl::make_unexpected(make_error(Code::inputs_inconsistent, "coordinate " + name,
+                                        "has the fixed start rate " + std::to_string(wanted) +
+                                            ", and the loops, the drives and other fixed rates give it " +
+                                            std::to_string(got),
+                                        "fix fewer start rates: others then follow as nearly as they can"));
+}
+
 }  // namespace
 
 Simulation::Simulation(std::shared_ptr<const Mechanism> mechanism, Inertias inertias, const SimulationOptions& options)
@@ -100,26 +126,12 @@ Result<void> Simulation::take_rates(const State& state) {
     }
     return values;
   };
-  Eigen::MatrixXd free = Eigen::MatrixXd::Identity(f, f);  // what fixed rates leave
-  if (f > 0 && !fixed.empty()) {
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> hard(lever(fixed));
-    rates = hard.solve(wish(fixed));
-    const Eigen::MatrixXd across = hard.pseudoInverse() * lever(fixed);
-    free = (free - across).eval();  // projects
-  }
-  if (f > 0 && !asked.empty()) {
-    const Eigen::MatrixXd soft = lever(asked) * free;
-    rates += free * soft.completeOrthogonalDecomposition().solve(wish(asked) - lever(asked) * rates);
-  }
+  if (f > 0) rates = nearest_rates(lever(fixed), wish(fixed), lever(asked), wish(asked));
   if (!motion_.velocities(rates)) return stuck(state.time);
   for (const std::uint32_t v : fixed) {
     const double got = motion_.v()[v], wanted = state.v[v];
     if (weight(v) * std::abs(got - wanted) <= fixed_rate_met * (1.0 + weight(v) * std::abs(wanted))) continue;
-    return tl::make_unexpected(make_error(Code::inputs_inconsistent, "coordinate " + mechanism_->rate_names[v].name,
-                                          "has the fixed start rate " + std::to_string(wanted) +
-                                              ", and the loops, the drives and other " + "fixed rates give it " +
-                                              std::to_string(got),
-                                          "fix fewer start rates: others then follow as nearly as they can"));
+    return unmet_rate(mechanism_->rate_names[v].name, wanted, got);
   }
   for (const std::uint32_t v : asked) {
     summary_.start_change = std::max(summary_.start_change, weight(v) * std::abs(motion_.v()[v] - state.v[v]));

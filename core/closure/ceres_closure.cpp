@@ -105,7 +105,7 @@ class RelationCost final : public ceres::CostFunction {
         double sum = 0.0;
         for (std::size_t i = 0; i < t; ++i) {
           const std::uint32_t rate = block.v + static_cast<std::uint32_t>(i);
-          sum += work_.equations.jacobian(relation_.first_row + row, mechanism.column_of_rate[rate]) /
+          sum += work_.equations.jacobian.coeff(relation_.first_row + row, mechanism.column_of_rate[rate]) /
                  mechanism.rate_scale[rate] * tangent[k * t + i];
         }
         out[row * n + k] = factor * sum;
@@ -140,8 +140,6 @@ class QuietLog {
   static inline int users_ = 0;
   static inline int before_ = 0;
 };
-
-constexpr std::uint32_t largest_dense_problem = 300;
 
 }  // namespace
 
@@ -209,7 +207,7 @@ CeresClosure::Result CeresClosure::solve(double time, std::uint32_t max_iteratio
   if (impl_->problem.NumResidualBlocks() > 0) {
     ceres::Solver::Options options;
     options.linear_solver_type =
-        work.mechanism->columns <= largest_dense_problem ? ceres::DENSE_QR : ceres::SPARSE_NORMAL_CHOLESKY;
+        work.mechanism->columns <= largest_dense ? ceres::DENSE_QR : ceres::SPARSE_NORMAL_CHOLESKY;
     options.max_num_iterations = static_cast<int>(max_iterations);
     // Stop at rounding, not at a relative change: the cost of a closed loop is zero.
     options.function_tolerance = 1e-16;

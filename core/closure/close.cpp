@@ -73,7 +73,7 @@ koppel_status describe(Work& work, Report& report) {
   const Factorisation::Condition condition = work.condition;
   report.verdict = mechanism.relations.empty() ? Verdict::open : Verdict::closed;
   report.residual = work.equations.error();
-  report.rank = static_cast<std::uint32_t>(work.factorisation.rank());
+  report.rank = static_cast<std::uint32_t>(work.factorisation->rank());
   report.condition = condition.ratio;
   // Residuals are themselves known only to rounding of the positions that they are differences of.
   double reach = 1.0;
@@ -113,7 +113,7 @@ double greatest(const Mechanism& mechanism, const Eigen::VectorXd& rates) {
 bool solve_rates(Work& work, double moving, Eigen::VectorXd& rates) {
   const Mechanism& mechanism = *work.mechanism;
   work.rhs_copy = work.rhs;
-  work.factorisation.solve(work.rhs, work.step);
+  work.factorisation->solve(work.rhs, work.step);
   for (std::uint32_t i = 0; i < mechanism.unknowns; ++i) {
     const std::uint32_t rate = mechanism.rate_of_column[i];
     rates[rate] = mechanism.rate_scale[rate] * work.step[i];
@@ -121,8 +121,8 @@ bool solve_rates(Work& work, double moving, Eigen::VectorXd& rates) {
   if (mechanism.rows == 0) return true;
   constexpr double allowed = 1e-9;
   const double asked = work.rhs_copy.lpNorm<Eigen::Infinity>();
-  const double lever = work.equations.jacobian.lpNorm<Eigen::Infinity>();
-  work.rhs_copy.noalias() -= work.equations.jacobian.leftCols(mechanism.unknowns) * work.step.head(mechanism.unknowns);
+  const double lever = work.equations.jacobian.coeffs().matrix().lpNorm<Eigen::Infinity>();
+  work.rhs_copy -= work.equations.jacobian.leftCols(mechanism.unknowns) * work.step.head(mechanism.unknowns);
   return work.rhs_copy.lpNorm<Eigen::Infinity>() <= allowed * std::max(asked, lever * moving);
 }
 
@@ -302,7 +302,7 @@ std::optional<koppel_status> track(Work& work, State& state, Report& report) {
   state.q = work.q;
   if (!tracker->regular_rank) {
     if (!factorise_at(work, state.q, state.time)) return KOPPEL_PLUGIN;
-    tracker->regular_rank = static_cast<std::uint32_t>(work.factorisation.rank());
+    tracker->regular_rank = static_cast<std::uint32_t>(work.factorisation->rank());
   }
   state.history.rank = *tracker->regular_rank;
   state.v = work.v;

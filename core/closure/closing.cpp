@@ -177,30 +177,25 @@ bool Closing::moved_little() { return distance(work_.q_start) <= largest_move; }
 bool Closing::believed(double correction, double motion) {
   work_.factorise(work_.q, state_.time);
   const Factorisation::Condition& condition = work_.condition;
-  if (work_.factorisation.rank() != state_.history.rank) return false;
-  if (work_.factorisation.rank() == 0) return true;
+  if (work_.factorisation->rank() != state_.history.rank) return false;
+  if (work_.factorisation->rank() == 0) return true;
   if (condition.ratio > well_conditioned || correction > surely_nearest * condition.smallest) return false;
   return motion <= condition.smallest || same_orientation();
 }
 
-/// Whether the Jacobian of the unknowns keeps its orientation from the state to work.q: then no singular value (or an
-/// even number of them) has gone through zero. For redundant equations too: their space turns but little.
+/// Whether the Jacobian of the unknowns keeps its orientation from the state to work.q.
 bool Closing::same_orientation() {
   const auto unknowns = static_cast<Eigen::Index>(mechanism_.unknowns);
-  if (work_.factorisation.rank() < unknowns) return false;
+  if (work_.factorisation->rank() < unknowns) return false;
   Equations& equations = work_.equations;
   work_.factorised = false;
   if (!equations.evaluate(state_.q, state_.history.time)) return false;
   equations.evaluate_jacobian();
-  work_.jacobian_before = equations.jacobian.leftCols(unknowns);
+  work_.orientation.remember(equations.jacobian);
   if (!equations.evaluate(work_.q, state_.time)) return false;
   equations.evaluate_jacobian();
   work_.factorised = true;
-  work_.turned.noalias() = work_.jacobian_before.transpose() * equations.jacobian.leftCols(unknowns);
-  work_.turned_factors.compute(work_.turned);
-  double sign = static_cast<double>(work_.turned_factors.permutationP().determinant());
-  for (Eigen::Index i = 0; i < unknowns; ++i) sign = work_.turned_factors.matrixLU()(i, i) < 0.0 ? -sign : sign;
-  return sign > 0.0;
+  return work_.orientation.is_kept(equations.jacobian);
 }
 
 /// Leads the inputs from a closed position to their targets, in steps that halve when they are not believed. weakest:

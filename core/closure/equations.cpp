@@ -61,7 +61,7 @@ Equations::Equations(const Mechanism& m)
     : mechanism(m),
       kinematics(m),
       residual(Eigen::VectorXd::Zero(m.rows)),
-      jacobian(Eigen::MatrixXd::Zero(m.rows, m.columns)),
+      jacobian(m.rows, m.columns),
       locals_(m.relations.size()) {
   for (std::size_t i = 0; i < m.relations.size(); ++i) {
     const Relation& relation = m.relations[i];
@@ -72,6 +72,19 @@ Equations::Equations(const Mechanism& m)
     locals_[i].out.assign(relation.rows, 0.0);
     block_.resize(std::max(block_.size(), relation.rows * (relation.path.size() + relation.coupled.size())));
   }
+  lay_out_jacobian();
+}
+
+void Equations::lay_out_jacobian() {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Relation& relation : mechanism.relations) {
+    for_each_entry(relation, [&entries](std::uint32_t row, const PathRate& rate) {
+      entries.emplace_back(static_cast<int>(row), static_cast<int>(rate.column), 0.0);
+    });
+  }
+  jacobian.setFromTriplets(entries.begin(), entries.end());
+  for (const auto& entry : entries)
+    order_.push_back(&jacobian.coeffRef(entry.row(), entry.col()) - jacobian.valuePtr());
 }
 
 bool Equations::joint_failed(JointId joint) {
@@ -195,21 +208,16 @@ void Equations::relation_jacobian(std::size_t index, double* block) const {
 }
 
 void Equations::evaluate_jacobian() {
+  jacobian.coeffs().setZero();
+  const Eigen::Index* place = order_.data();
+  double* values = jacobian.valuePtr();
   for (std::size_t i = 0; i < mechanism.relations.size(); ++i) {
-    const Relation& relation = mechanism.relations[i];
     relation_jacobian(i, block_.data());
     const double* entry = block_.data();
-    for (std::uint32_t row = relation.first_row; row < relation.first_row + relation.rows; ++row) {
-      if (relation.kind == RelationKind::constraint) jacobian.row(row).setZero();
-      for (const auto* rates : {&relation.path, &relation.coupled}) {
-        // A constraint's coordinate may lie on its path too.
-        for (const PathRate& rate : *rates) {
-          double& at = jacobian(row, rate.column);
-          const double value = mechanism.rate_scale[rate.rate] * *entry++;
-          at = rates == &relation.coupled ? at + value : value;
-        }
-      }
-    }
+    // A constraint's coordinate may lie on its path too: its entries add up.
+    for_each_entry(mechanism.relations[i], [&](std::uint32_t, const PathRate& rate) {
+      values[*place++] += mechanism.rate_scale[rate.rate] * *entry++;
+    });
   }
 }
 

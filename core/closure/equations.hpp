@@ -8,12 +8,24 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "mechanism/kinematics.hpp"
 #include "mechanism/mechanism.hpp"
 #include "spatial/twist.hpp"
 
 namespace koppel {
+
+/// Calls visit(row, rate) for every entry of a relation's own Jacobian, row by row: those of its path, then its coupled
+/// ones.
+template <typename Visit>
+void for_each_entry(const Relation& relation, const Visit& visit) {
+  for (std::uint32_t row = relation.first_row; row < relation.first_row + relation.rows; ++row) {
+    for (const auto* rates : {&relation.path, &relation.coupled}) {
+      for (const PathRate& rate : *rates) visit(row, rate);
+    }
+  }
+}
 
 /// Evaluates the equations at one position after another; scratch of one thread. A function that returns false met a
 /// plugin that failed; culprit() then tells which.
@@ -24,14 +36,14 @@ class Equations {
   const Mechanism& mechanism;
   Kinematics kinematics;
   Eigen::VectorXd residual;  ///< rows, scaled
-  Eigen::MatrixXd jacobian;  ///< rows x columns, scaled: unknowns first, then driven rates
+  /// Rows x columns, scaled: unknowns first, then driven rates. Its pattern stays.
+  Eigen::SparseMatrix<double> jacobian;
 
   /// Forward kinematics and residuals at q.
   bool evaluate(const Eigen::VectorXd& q, double time);
   /// The Jacobian at the position last evaluated.
   void evaluate_jacobian();
-  /// One relation's rows of it in its own columns, row by row: those of its path, then its coupled ones. Rates are not
-  /// scaled here.
+  /// One relation's rows of it in its own columns, in the order of for_each_entry(). Rates are not scaled here.
   void relation_jacobian(std::size_t relation, double* block) const;
   /// Frames of a relation in the world, at the position last evaluated.
   const Pose& frame_a(std::size_t relation) const { return locals_[relation].a; }
@@ -71,6 +83,7 @@ class Equations {
     std::vector<double> out;       ///< rows
   };
 
+  void lay_out_jacobian();
   bool evaluate_relation(const Relation& relation, Local& local, const Eigen::VectorXd& q);
   bool evaluate_constraint(const Relation& relation, Local& local);
   koppel_configuration configuration(const Relation& relation, const Local& local, bool with_rates);
@@ -80,7 +93,8 @@ class Equations {
 
   double time_ = 0.0;
   std::vector<Local> locals_;
-  std::vector<double> block_;  ///< of one relation's Jacobian
+  std::vector<double> block_;        ///< of one relation's Jacobian
+  std::vector<Eigen::Index> order_;  ///< where its entries go in that of all, one relation after another
   std::array<double, 12> pose_array_{};
   std::array<double, 6> twist_array_{};
   std::string (*culprit_kind_)(const Mechanism&, std::uint32_t) = nullptr;

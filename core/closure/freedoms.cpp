@@ -131,8 +131,8 @@ void look_nearby(Work& work, const State& state, const Spaces& here, Freedoms& f
     if (most < stayed) continue;
     moved = true;
     work.equations.evaluate_jacobian();
-    const Eigen::VectorXd values = Eigen::BDCSVD<Eigen::MatrixXd>(work.equations.jacobian).singularValues();
-    greatest = std::max(greatest, rank_of(values, work.equations.jacobian));
+    const Eigen::MatrixXd jacobian = work.equations.jacobian;
+    greatest = std::max(greatest, rank_of(Eigen::BDCSVD<Eigen::MatrixXd>(jacobian).singularValues(), jacobian));
   }
   const auto columns = static_cast<std::int32_t>(mechanism.columns);
   freedoms.mobility_here = columns - static_cast<std::int32_t>(here.rank);

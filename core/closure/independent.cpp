@@ -19,7 +19,7 @@ bool evaluate(Work& work, const State& state) {
 /// Where the equations stand.
 double quality_of(const Work& work, const std::vector<std::uint32_t>& rates) {
   const Mechanism& mechanism = *work.mechanism;
-  const Eigen::MatrixXd& jacobian = work.equations.jacobian;
+  const Eigen::MatrixXd jacobian = work.equations.jacobian;
   Eigen::MatrixXd others(jacobian.rows(), jacobian.cols());
   Eigen::Index count = 0;
   for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
@@ -35,7 +35,7 @@ double quality_of(const Work& work, const std::vector<std::uint32_t>& rates) {
 /// Where the equations stand.
 IndependentSet best_set(const Work& work) {
   const Mechanism& mechanism = *work.mechanism;
-  const Eigen::MatrixXd& jacobian = work.equations.jacobian;
+  const Eigen::MatrixXd jacobian = work.equations.jacobian;
   IndependentSet set;
   Eigen::Index rank = 0;
   std::vector<Eigen::Index> order(static_cast<std::size_t>(jacobian.cols()));

@@ -28,9 +28,9 @@ NewtonResult newton(Work& work, double time, const NewtonOptions& options) {
   Equations& equations = work.equations;
   const bool all = options.inputs == InputsAre::free;
   if (all && !work.all_columns) {
-    work.all_columns = std::make_unique<Factorisation>(mechanism.rows, mechanism.columns);
+    work.all_columns = Factorisation::of(mechanism.rows, mechanism.columns);
   }
-  Factorisation& factorisation = all ? *work.all_columns : work.factorisation;
+  Factorisation& factorisation = all ? *work.all_columns : *work.factorisation;
   const Eigen::Index columns = all ? mechanism.columns : mechanism.unknowns;
 
   NewtonResult result;
@@ -45,7 +45,7 @@ NewtonResult newton(Work& work, double time, const NewtonOptions& options) {
   while (error > options.tolerance && result.iterations < steps() && columns > 0) {
     ++result.iterations;
     equations.evaluate_jacobian();
-    factorisation.compute(equations.jacobian.leftCols(columns));
+    factorisation.compute(equations.jacobian);
     work.rhs = -equations.residual;
     factorisation.solve(work.rhs, work.step);
     const double size = work.step.head(columns).lpNorm<Eigen::Infinity>();

@@ -268,7 +268,7 @@ std::size_t stopped_input(Curve& curve, const CurvePoint& limit) {
     const std::uint32_t rate = m.inputs[i].v;
     const auto column = curve.work().equations.jacobian.col(m.column_of_rate[rate]);
     const double speed = curve.way().rate()[static_cast<Eigen::Index>(i)] / m.rate_scale[rate];
-    const double part = std::abs(speed * against.dot(column));
+    const double part = std::abs(speed * column.dot(against));
     if (part > greatest) {
       greatest = part;
       result = i;

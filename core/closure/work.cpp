@@ -8,7 +8,7 @@ namespace koppel {
 Work::Work(std::shared_ptr<const Mechanism> m)
     : mechanism(std::move(m)),
       equations(*mechanism),
-      factorisation(mechanism->rows, mechanism->unknowns),
+      factorisation(Factorisation::of(mechanism->rows, mechanism->unknowns)),
       q(mechanism->nq),
       q_trial(mechanism->nq),
       q_start(mechanism->nq),
@@ -19,9 +19,7 @@ Work::Work(std::shared_ptr<const Mechanism> m)
       rhs_copy(mechanism->rows),
       step(mechanism->columns),
       rest(Eigen::VectorXd::Zero(mechanism->nv)),
-      jacobian_before(mechanism->rows, mechanism->unknowns),
-      turned(mechanism->unknowns, mechanism->unknowns),
-      turned_factors(mechanism->unknowns),
+      orientation(mechanism->unknowns),
       saved(*mechanism) {
   factorised_at.resize(mechanism->nq);
 }
@@ -30,8 +28,8 @@ Work::~Work() = default;
 
 void Work::factorise(const Eigen::VectorXd& at, double time) {
   equations.evaluate_jacobian();
-  factorisation.compute(equations.jacobian.leftCols(mechanism->unknowns));
-  condition = factorisation.condition();
+  factorisation->compute(equations.jacobian);
+  condition = factorisation->condition();
   factorised = true;
   factorised_at = at;
   factorised_time = time;

@@ -4,10 +4,10 @@
 #include <memory>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include "closure/equations.hpp"
 #include "closure/factorisation.hpp"
+#include "closure/orientation.hpp"
 #include "mechanism/mechanism.hpp"
 #include "mechanism/state.hpp"
 
@@ -29,7 +29,7 @@ struct Work {
 
   std::shared_ptr<const Mechanism> mechanism;
   Equations equations;
-  Factorisation factorisation;    ///< of the columns of the unknowns
+  std::unique_ptr<Factorisation> factorisation;  ///< of the columns of the unknowns
   bool factorised = false;        ///< equations stand, and `factorisation` holds, at the position below
   Eigen::VectorXd factorised_at;  ///< nq
   double factorised_time = 0.0;
@@ -40,9 +40,7 @@ struct Work {
   Eigen::VectorXd rhs, rhs_copy;        ///< rows
   Eigen::VectorXd step;                 ///< columns
   Eigen::VectorXd rest;                 ///< nv zeros
-  Eigen::MatrixXd jacobian_before;      ///< rows x unknowns
-  Eigen::MatrixXd turned;               ///< unknowns x unknowns
-  Eigen::PartialPivLU<Eigen::MatrixXd> turned_factors;
+  Orientation orientation;              ///< of the columns of the unknowns
   State saved;  ///< what a failed move goes back to
 
   /// Jacobian and factorisation where the equations stand, which is at q.

@@ -5,20 +5,10 @@
 namespace koppel {
 namespace {
 
-/// Calls visit(row, column) for every entry of a relation's block, in its order.
-template <typename Visit>
-void for_each_entry(const Relation& relation, const Visit& visit) {
-  for (std::uint32_t k = 0; k < relation.rows; ++k) {
-    for (const auto* rates : {&relation.path, &relation.coupled}) {
-      for (const PathRate& rate : *rates) visit(relation.first_row + k, rate.column);
-    }
-  }
-}
-
 RowPattern pattern_of(const Mechanism& mechanism) {
   std::vector<std::vector<std::uint32_t>> rows(mechanism.rows);
   for (const Relation& relation : mechanism.relations) {
-    for_each_entry(relation, [&](std::uint32_t row, std::uint32_t column) { rows[row].push_back(column); });
+    for_each_entry(relation, [&](std::uint32_t row, const PathRate& rate) { rows[row].push_back(rate.column); });
   }
   RowPattern pattern;
   pattern.columns = mechanism.columns;
@@ -38,10 +28,10 @@ ClosureRows::ClosureRows(const Mechanism& mechanism)
     : mechanism_(mechanism), pattern_(pattern_of(mechanism)), values_(pattern_.column.size(), 0.0) {
   for (const std::uint32_t rate : mechanism.rate_of_column) scales_.push_back(mechanism.rate_scale[rate]);
   for (const Relation& relation : mechanism.relations) {
-    for_each_entry(relation, [&](std::uint32_t row, std::uint32_t column) {
+    for_each_entry(relation, [&](std::uint32_t row, const PathRate& rate) {
       const auto begin = pattern_.column.begin() + pattern_.first[row];
       const auto end = pattern_.column.begin() + pattern_.first[row + 1];
-      order_.push_back(static_cast<std::size_t>(std::lower_bound(begin, end, column) - pattern_.column.begin()));
+      order_.push_back(static_cast<std::size_t>(std::lower_bound(begin, end, rate.column) - pattern_.column.begin()));
     });
     block_.resize(std::max(block_.size(), relation.rows * (relation.path.size() + relation.coupled.size())));
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "closure/equations.hpp"
-#include "dynamics/elimination.hpp"
+#include "closure/elimination.hpp"
 
 namespace koppel {
 

@@ -11,7 +11,7 @@
 #include "dynamics/archive.hpp"
 #include "dynamics/chart.hpp"
 #include "dynamics/closure_rows.hpp"
-#include "dynamics/elimination.hpp"
+#include "closure/elimination.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/forward_dynamics.hpp"
 #include "dynamics/inertias.hpp"

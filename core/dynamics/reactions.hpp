@@ -14,7 +14,7 @@
 #include "closure/equations.hpp"
 #include "closure/load_paths.hpp"
 #include "dynamics/closure_rows.hpp"
-#include "dynamics/elimination.hpp"
+#include "closure/elimination.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/inertias.hpp"
 #include "mechanism/loads.hpp"

@@ -51,7 +51,7 @@ double jacobian_error(const Built& built, const Eigen::VectorXd& q, double time)
             return there.residual[row];
           },
           2e-3);
-      worst = std::max(worst, std::abs(here.jacobian(row, column) - expected));
+      worst = std::max(worst, std::abs(here.jacobian.coeff(row, column) - expected));
     }
   }
   return worst;

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "../spatial/directions.hpp"
+#include "closure/dense_factorisation.hpp"
+#include "closure/orientation.hpp"
+#include "closure/sparse_factorisation.hpp"
 
 namespace koppel::test {
 namespace {
@@ -35,15 +38,20 @@ Matrix graded(Eigen::Index rows, Eigen::Index columns, double condition, Random&
 constexpr std::pair<Eigen::Index, Eigen::Index> shapes[] = {{1, 1},   {5, 3},   {3, 5},  {6, 6},
                                                             {30, 30}, {40, 12}, {12, 40}};
 
-TEST(Factorisation, SolvesAsACompleteOrthogonalDecompositionDoes) {
+template <typename Kind>
+class FactorisationOf : public testing::Test {};
+using Kinds = testing::Types<DenseFactorisation, SparseFactorisation>;
+TYPED_TEST_SUITE(FactorisationOf, Kinds);
+
+TYPED_TEST(FactorisationOf, SolvesAsACompleteOrthogonalDecompositionDoes) {
   Random random(1);
   for (const auto& [rows, columns] : shapes) {
-    Factorisation factorisation(rows, columns);
+    TypeParam factorisation(rows, columns);
     Vector x(columns);
     for (Eigen::Index rank = 0; rank <= std::min(rows, columns); ++rank) {
       const Matrix a = rank == 0 ? Matrix(Matrix::Zero(rows, columns)) : of_rank(rows, columns, rank, random);
       const Vector b = random_matrix(rows, 1, random);
-      factorisation.compute(a);
+      factorisation.compute(a.sparseView());
       EXPECT_EQ(factorisation.rank(), rank) << rows << " x " << columns;
       Vector scratch = b;
       factorisation.solve(scratch, x);
@@ -57,14 +65,14 @@ TEST(Factorisation, SolvesAsACompleteOrthogonalDecompositionDoes) {
 }
 
 // Of graded matrices the small residual matters: the error of x is eps times the condition number.
-TEST(Factorisation, SolvesConsistentSystemsToTheirCondition) {
+TYPED_TEST(FactorisationOf, SolvesConsistentSystemsToTheirCondition) {
   Random random(2);
   for (const double condition : {1e0, 1e3, 1e6, 1e9}) {
     for (const auto& [rows, columns] : shapes) {
       const Matrix a = graded(rows, columns, condition, random);
       const Vector known = a.transpose() * random_matrix(rows, 1, random);  // no part in the null space
-      Factorisation factorisation(rows, columns);
-      factorisation.compute(a);
+      TypeParam factorisation(rows, columns);
+      factorisation.compute(a.sparseView());
       Vector b = a * known, x(columns);
       factorisation.solve(b, x);
       EXPECT_LE((x - known).norm(), 1e-14 * condition * static_cast<double>(rows + columns));
@@ -72,10 +80,10 @@ TEST(Factorisation, SolvesConsistentSystemsToTheirCondition) {
   }
 }
 
-TEST(Factorisation, TakesMatricesWithoutRowsOrColumns) {
+TYPED_TEST(FactorisationOf, TakesMatricesWithoutRowsOrColumns) {
   for (const auto& [rows, columns] : {std::pair<Eigen::Index, Eigen::Index>{0, 4}, {4, 0}, {0, 0}}) {
-    Factorisation factorisation(rows, columns);
-    factorisation.compute(Matrix(rows, columns));
+    TypeParam factorisation(rows, columns);
+    factorisation.compute(Matrix(rows, columns).sparseView());
     EXPECT_EQ(factorisation.rank(), 0);
     Vector b = Vector::Ones(rows), x = Vector::Ones(columns);
     factorisation.solve(b, x);
@@ -85,15 +93,15 @@ TEST(Factorisation, TakesMatricesWithoutRowsOrColumns) {
   }
 }
 
-TEST(Factorisation, IsNotDisturbedByWhatItFactorisedBefore) {
+TYPED_TEST(FactorisationOf, IsNotDisturbedByWhatItFactorisedBefore) {
   Random random(3);
-  Factorisation factorisation(6, 9);
+  TypeParam factorisation(6, 9);
   for (int trial = 0; trial < 50; ++trial) {
     const Matrix a = of_rank(6, 9, 1 + trial % 6, random);
     const Vector b = random_matrix(6, 1, random);
-    Factorisation fresh(6, 9);
-    fresh.compute(a);
-    factorisation.compute(a);
+    TypeParam fresh(6, 9);
+    fresh.compute(a.sparseView());
+    factorisation.compute(a.sparseView());
     Vector b1 = b, b2 = b, x1(9), x2(9);
     factorisation.solve(b1, x1);
     fresh.solve(b2, x2);
@@ -102,7 +110,7 @@ TEST(Factorisation, IsNotDisturbedByWhatItFactorisedBefore) {
   }
 }
 
-TEST(Factorisation, EstimatesTheConditionWithinAFactorOfTwo) {
+TYPED_TEST(FactorisationOf, EstimatesTheConditionWithinAFactorOfTwo) {
   Random random(4);
   for (int trial = 0; trial < 400; ++trial) {
     const auto [rows, columns] = shapes[static_cast<std::size_t>(trial) % std::size(shapes)];
@@ -110,8 +118,8 @@ TEST(Factorisation, EstimatesTheConditionWithinAFactorOfTwo) {
     const Matrix a = is_graded ? graded(rows, columns, std::pow(10, random.between(0, 9)), random)
                                : random_matrix(rows, columns, random);
     const Vector values = a.bdcSvd().singularValues();
-    Factorisation factorisation(rows, columns);
-    factorisation.compute(a);
+    TypeParam factorisation(rows, columns);
+    factorisation.compute(a.sparseView());
     ASSERT_EQ(factorisation.rank(), values.size());
     const Factorisation::Condition condition = factorisation.condition();
     const double smallest = values[values.size() - 1], ratio = values[0] / smallest;
@@ -122,18 +130,62 @@ TEST(Factorisation, EstimatesTheConditionWithinAFactorOfTwo) {
   }
 }
 
-TEST(Factorisation, EstimatesTheConditionOfWhatIsLeftWhenRankIsLost) {
+TYPED_TEST(FactorisationOf, EstimatesTheConditionOfWhatIsLeftWhenRankIsLost) {
   Random random(5);
   for (int trial = 0; trial < 100; ++trial) {
     const Eigen::Index rank = 1 + trial % 6;
     const Matrix a = of_rank(12, 9, rank, random);
     const Vector values = a.bdcSvd().singularValues();
-    Factorisation factorisation(12, 9);
-    factorisation.compute(a);
+    TypeParam factorisation(12, 9);
+    factorisation.compute(a.sparseView());
     ASSERT_EQ(factorisation.rank(), rank);
     const double smallest = factorisation.condition().smallest;
     EXPECT_GE(smallest, values[rank - 1] * (1 - 1e-6));
     EXPECT_LE(smallest, 2 * values[rank - 1]);
+  }
+}
+
+// A chain of loops: rows of each in its own columns and one shared with the next; every fourth row follows from others.
+Eigen::SparseMatrix<double> chain(Eigen::Index loops, Random& random) {
+  Matrix a = Matrix::Zero(4 * loops, 2 * loops + 1);
+  for (Eigen::Index i = 0; i < loops; ++i) {
+    a.block(4 * i, 2 * i, 4, 3) = of_rank(4, 3, 2, random);
+  }
+  return a.sparseView();
+}
+
+TEST(Factorisation, OfAChainOfLoopsIsTheSameDenseAndSparse) {
+  Random random(6);
+  for (const Eigen::Index loops : {1, 10, 60}) {
+    const auto a = chain(loops, random);
+    DenseFactorisation dense(a.rows(), a.cols());
+    SparseFactorisation sparse(a.rows(), a.cols());
+    dense.compute(a);
+    sparse.compute(a);
+    ASSERT_EQ(sparse.rank(), dense.rank());
+    const Vector b = random_matrix(a.rows(), 1, random);
+    Vector of_dense(a.cols()), of_sparse(a.cols()), scratch = b;
+    dense.solve(scratch, of_dense);
+    scratch = b;
+    sparse.solve(scratch, of_sparse);
+    const double condition = dense.condition().ratio;
+    EXPECT_LE((of_sparse - of_dense).norm(), 1e-14 * condition * condition * (1 + of_dense.norm()));
+    EXPECT_GE(sparse.condition().ratio, condition / 2);
+    EXPECT_LE(sparse.condition().ratio, condition * 2);
+  }
+}
+
+TEST(Orientation, TurnsWhereADeterminantChangesItsSign) {
+  Random random(7);
+  for (const Eigen::Index n : {Eigen::Index(1), Eigen::Index(7), largest_dense, largest_dense + 1}) {
+    Matrix before = Matrix::Identity(n + 2, n);
+    before.block(0, 0, n, n) += random_matrix(n, n, random) / static_cast<double>(4 * n);
+    Matrix turned = before;
+    turned.col(n / 2) = -turned.col(n / 2);
+    Orientation orientation(n);
+    orientation.remember(before.sparseView());
+    EXPECT_TRUE(orientation.is_kept(before.sparseView()));
+    EXPECT_FALSE(orientation.is_kept(turned.sparseView())) << n;
   }
 }
 

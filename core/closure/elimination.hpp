@@ -54,6 +54,10 @@ class Elimination {
   /// How all columns follow from the independent ones where J x = 0: columns x independent.
   using Transfer = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   void transfer(Transfer& k) const;
+  /// The same for a vector of the independent columns' x: makes all of x from these entries of it.
+  void follow(Eigen::VectorXd& x) const;
+  /// And transposed: adds to the independent entries what all others pass on to them.
+  void gather(Eigen::VectorXd& x) const;
   /// Multipliers of the rows whose transposed rows add up to c in the dependent columns; zero for rows left out.
   void solve_transposed(const Eigen::VectorXd& c, Eigen::VectorXd& multipliers);
 

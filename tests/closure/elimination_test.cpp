@@ -1,6 +1,6 @@
 // Sparse elimination against dense algebra: on random rows, with rows that follow from others, and at values other than
 // those at which the pivots were chosen.
-#include "dynamics/elimination.hpp"
+#include "closure/elimination.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,12 @@
-#include "dynamics/elimination.hpp"
+#include "closure/elimination.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace koppel {
 namespace {
@@ -14,44 +16,85 @@ constexpr double threshold = 0.1;  // of the greatest entry of its row: what a p
 
 using SparseRow = std::map<std::uint32_t, double>;
 
-/// The pivot with the least product of other entries in its row and its column; nothing if no row has any left.
-struct Choice {
-  std::size_t row = none;
-  std::uint32_t column = none;
-  double value = 0.0;
-};
+/// Rows on their way to a triangular form, and the pivot that each of them offers.
+class Remaining {
+ public:
+  /// least: what the scaled entries of a row must exceed for it to have a pivot.
+  Remaining(std::vector<SparseRow> rows, std::uint32_t choosable, const std::vector<double>& scale, double least)
+      : rows_(std::move(rows)), rows_with_(choosable), offers_(rows_.size()), scale_(scale), least_(least) {
+    for (std::uint32_t i = 0; i < rows_.size(); ++i) {
+      for (const auto& [column, value] : rows_[i]) {
+        if (column < choosable) rows_with_[column].insert(i);
+      }
+    }
+    for (std::uint32_t i = 0; i < rows_.size(); ++i) offer(i);
+  }
 
-Choice choose_pivot(const std::vector<SparseRow>& rows, const std::vector<bool>& done, std::uint32_t choosable,
-                    const std::vector<double>& scale, double least) {
-  std::vector<std::uint32_t> count(choosable, 0);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (done[i]) continue;
-    for (const auto& [column, value] : rows[i]) {
-      if (column < choosable) ++count[column];
+  /// Few other entries in row and column come first, then what is great in its row.
+  struct Pivot {
+    double cost = 0.0, less = 0.0;  ///< less: minus its part of the row's greatest entry
+    std::uint32_t row = none, column = none;
+    auto operator<=>(const Pivot&) const = default;
+  };
+
+  /// Takes the best pivot and its column out of all other rows; nothing if none is left.
+  Pivot eliminate() {
+    if (queue_.empty()) return {};
+    const Pivot pivot = *queue_.begin();
+    const SparseRow row = std::move(rows_[pivot.row]);
+    std::set<std::uint32_t> affected;
+    for (const auto& [column, value] : row) {
+      if (column >= rows_with_.size()) continue;
+      rows_with_[column].erase(pivot.row);
+      affected.insert(rows_with_[column].begin(), rows_with_[column].end());
     }
+    for (const std::uint32_t i : rows_with_[pivot.column]) subtract(row, pivot.column, i);
+    rows_with_[pivot.column].clear();
+    withdraw(pivot.row);
+    for (const std::uint32_t i : affected) offer(i);
+    return pivot;
   }
-  Choice best;
-  double best_cost = std::numeric_limits<double>::infinity(), best_part = 0.0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (done[i]) continue;
+
+ private:
+  void subtract(const SparseRow& row, std::uint32_t column, std::uint32_t from) {
+    const double factor = rows_[from].at(column) / row.at(column);
+    for (const auto& [other, value] : row) {
+      rows_[from][other] -= factor * value;
+      if (other < rows_with_.size() && other != column) rows_with_[other].insert(from);
+    }
+    rows_[from].erase(column);
+  }
+
+  void withdraw(std::uint32_t i) {
+    if (offers_[i].row != none) queue_.erase(offers_[i]);
+    offers_[i] = {};
+  }
+
+  void offer(std::uint32_t i) {
+    withdraw(i);
     double greatest = 0.0;
-    for (const auto& [column, value] : rows[i]) {
-      if (column < choosable) greatest = std::max(greatest, std::abs(value) * scale[column]);
+    for (const auto& [column, value] : rows_[i]) {
+      if (column < rows_with_.size()) greatest = std::max(greatest, std::abs(value) * scale_[column]);
     }
-    if (!(greatest > least)) continue;
-    for (const auto& [column, value] : rows[i]) {
-      if (column >= choosable) continue;
-      const double part = std::abs(value) * scale[column] / greatest;
+    if (!(greatest > least_)) return;
+    for (const auto& [column, value] : rows_[i]) {
+      if (column >= rows_with_.size()) continue;
+      const double part = std::abs(value) * scale_[column] / greatest;
       if (part < threshold) continue;
-      const double cost = static_cast<double>(rows[i].size() - 1) * static_cast<double>(count[column] - 1);
-      if (cost > best_cost || (cost == best_cost && part <= best_part)) continue;
-      best = {i, column, value};
-      best_cost = cost;
-      best_part = part;
+      const double cost = static_cast<double>(rows_[i].size() - 1) * static_cast<double>(rows_with_[column].size() - 1);
+      const Pivot pivot{cost, -part, i, column};
+      if (offers_[i].row == none || pivot < offers_[i]) offers_[i] = pivot;
     }
+    if (offers_[i].row != none) queue_.insert(offers_[i]);
   }
-  return best;
-}
+
+  std::vector<SparseRow> rows_;
+  std::vector<std::set<std::uint32_t>> rows_with_;  ///< rows that have no pivot yet, by choosable column
+  std::vector<Pivot> offers_;
+  std::set<Pivot> queue_;
+  const std::vector<double>& scale_;
+  double least_;
+};
 
 }  // namespace
 
@@ -67,23 +110,10 @@ void Elimination::choose(const std::vector<double>& values, const std::vector<do
       greatest = std::max(greatest, std::abs(values[k]) * scale[pattern_.column[k]]);
     }
   }
-  std::vector<bool> done(rows.size(), false);
+  Remaining remaining(std::move(rows), choosable_, scale, tolerance * greatest);
   pivots_.clear();
-  for (;;) {
-    const Choice pivot = choose_pivot(rows, done, choosable_, scale, tolerance * greatest);
-    if (pivot.column == none) break;
-    done[pivot.row] = true;
-    pivots_.push_back({static_cast<std::uint32_t>(pivot.row), pivot.column, 0, 0, scale[pivot.column]});
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (done[i]) continue;
-      const auto under = rows[i].find(pivot.column);
-      if (under == rows[i].end()) continue;
-      const double factor = under->second / pivot.value;
-      rows[i].erase(under);
-      for (const auto& [column, value] : rows[pivot.row]) {
-        if (column != pivot.column) rows[i][column] -= factor * value;
-      }
-    }
+  for (auto pivot = remaining.eliminate(); pivot.row != none; pivot = remaining.eliminate()) {
+    pivots_.push_back({pivot.row, pivot.column, 0, 0, scale[pivot.column]});
   }
   lay_out();
 }
@@ -196,6 +226,21 @@ void Elimination::transfer(Transfer& k) const {
   for (std::size_t p = pivots_.size(); p-- > 0;) {
     auto row = k.row(pivots_[p].column);
     for (std::uint32_t i = pivots_[p].upper; i < upper_end(p); ++i) row -= upper_[i].value * k.row(upper_[i].at);
+  }
+}
+
+void Elimination::follow(Eigen::VectorXd& x) const {
+  for (std::size_t p = pivots_.size(); p-- > 0;) {
+    double sum = 0.0;
+    for (std::uint32_t i = pivots_[p].upper; i < upper_end(p); ++i) sum -= upper_[i].value * x[upper_[i].at];
+    x[pivots_[p].column] = sum;
+  }
+}
+
+void Elimination::gather(Eigen::VectorXd& x) const {
+  for (std::size_t p = 0; p < pivots_.size(); ++p) {
+    const double here = x[pivots_[p].column];
+    for (std::uint32_t i = pivots_[p].upper; i < upper_end(p); ++i) x[upper_[i].at] -= upper_[i].value * here;
   }
 }
 

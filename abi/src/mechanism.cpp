@@ -24,6 +24,7 @@ std::ptrdiff_t count_of(const Mechanism& m, std::int32_t kind) {
     case KOPPEL_KIND_RECORD: return std::ssize(m.record_columns);
     case KOPPEL_KIND_EQUATION: return std::ssize(m.equation_names);
     case KOPPEL_KIND_SCENE: return 2;
+    case KOPPEL_KIND_WATCH: return std::ssize(m.watches);
     default: return -1;
   }
 }
@@ -38,6 +39,7 @@ std::string_view name_of(const Mechanism& m, std::int32_t kind, std::size_t i) {
     case KOPPEL_KIND_INPUT: return m.inputs[i].name;
     case KOPPEL_KIND_RECORD: return m.record_columns[i].name;
     case KOPPEL_KIND_EQUATION: return m.equation_names[i].name;
+    case KOPPEL_KIND_WATCH: return m.watches[i].name;
     default: return i == 0 ? m.name : m.title;
   }
 }
@@ -49,6 +51,7 @@ std::string_view unit_of(const Mechanism& m, std::int32_t kind, std::size_t i) {
     case KOPPEL_KIND_INPUT: return m.coordinate_names[m.inputs[i].q].unit;
     case KOPPEL_KIND_RECORD: return m.record_columns[i].unit;
     case KOPPEL_KIND_EQUATION: return m.equation_names[i].unit;
+    case KOPPEL_KIND_WATCH: return (m.watches[i].rate ? m.rate_names : m.coordinate_names)[m.watches[i].at].unit;
     default: return "";
   }
 }
@@ -98,6 +101,7 @@ koppel_status koppel_mechanism_sizes(const koppel_mechanism* mechanism, koppel_s
   out.constraints = u32(m.constraints.size());
   out.equations = m.rows;
   out.unknowns = m.unknowns;
+  out.watches = static_cast<std::uint32_t>(m.watches.size());
   koppel::write_struct(out, sizes);
   return KOPPEL_OK;
 }

@@ -34,17 +34,48 @@ koppel_status koppel_simulation_create(const koppel_state* state, const koppel_s
 
 void koppel_simulation_destroy(koppel_simulation* simulation) { delete simulation; }
 
+namespace {
+
+/// Ok if these may advance together.
+koppel_status check_advance(const koppel_simulation* simulation, double time, const koppel_state* state,
+                            koppel_error* error) {
+  if (simulation == nullptr || state == nullptr || state->mechanism != simulation->mechanism) {
+    return koppel::invalid_argument("simulation or state is NULL, or they belong to different mechanisms", error);
+  }
+  if (!(time >= simulation->simulation->shown())) {
+    return koppel::invalid_argument("the time lies before the last one, or is not a number", error);
+  }
+  return KOPPEL_OK;
+}
+
+}  // namespace
+
 koppel_status koppel_simulation_advance(koppel_simulation* simulation, double time, koppel_state* state,
                                         koppel_error* error) {
   return koppel::guarded(error, [&]() -> koppel_status {
-    if (simulation == nullptr || state == nullptr || state->mechanism != simulation->mechanism) {
-      return koppel::invalid_argument("simulation or state is NULL, or they belong to different mechanisms", error);
-    }
-    if (!(time >= simulation->simulation->shown())) {
-      return koppel::invalid_argument("the time lies before the last one, or is not a number", error);
-    }
+    if (const koppel_status checked = check_advance(simulation, time, state, error); checked < 0) return checked;
     const auto advanced = simulation->simulation->advance(time, state->state);
     return advanced ? KOPPEL_OK : koppel::fail(advanced.error(), error);
+  });
+}
+
+koppel_status koppel_simulation_watch(koppel_simulation* simulation, double time, koppel_state* state,
+                                      koppel_crossing* crossing, koppel_error* error) {
+  return koppel::guarded(error, [&]() -> koppel_status {
+    if (crossing == nullptr) return koppel::invalid_argument("crossing is NULL", error);
+    if (const koppel_status checked = check_advance(simulation, time, state, error); checked < 0) return checked;
+    const auto found = simulation->simulation->advance_watching(time, state->state);
+    if (!found) return koppel::fail(found.error(), error);
+    koppel_crossing out{};
+    out.watch = KOPPEL_NO_WATCH;
+    if (*found) {
+      out.watch = (*found)->watch;
+      out.time = (*found)->time;
+      out.rising = (*found)->rising ? 1 : 0;
+      out.stop = simulation->mechanism->watches[out.watch].stop ? 1 : 0;
+    }
+    koppel::write_struct(out, crossing);
+    return KOPPEL_OK;
   });
 }
 

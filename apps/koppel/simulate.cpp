@@ -36,15 +36,14 @@ class Simulate {
     if (!motion_.state || !motion_.work) good(KOPPEL_NO_MEMORY);
     if (outcome_ != Exit::fine || !recorded(recorder_.open()) || !begin()) return outcome_;
     const Clock::time_point begin = Clock::now();
-    for (std::uint32_t i = 0; i <= rows_; ++i) {
+    for (std::uint32_t i = 0; i <= rows_ && !stopped_; ++i) {
       const double time = i == rows_ ? duration_ : duration_ * i / rows_;
       if (time <= resumed_at_) continue;
       if (options_.realtime)
         std::this_thread::sleep_until(begin + std::chrono::duration<double>(time - std::max(resumed_at_, 0.0)));
       if (!advance(time)) break;
-      reached_ = time;
       show_progress(i);
-      if (!keep(time)) break;
+      if (!keep()) break;
     }
     seconds_ = std::chrono::duration<double>(Clock::now() - begin).count();
     if (simulation_) koppel_simulation_summarise(simulation_.get(), &summary_);
@@ -67,6 +66,7 @@ class Simulate {
       std::fprintf(out, "stiff       steps were as short as stability wants them: try --integrator cvode\n");
     }
     if (summary_.events > 0) std::fprintf(out, "events      %u kinks or jumps of forces\n", summary_.events);
+    print_crossings(out);
     if (comparison_) {
       std::fprintf(out, "error       of coordinates, estimated: %.2g at the end, %.2g at most\n", comparison_->last(),
                    comparison_->greatest());
@@ -99,6 +99,13 @@ class Simulate {
     document["rejected"] = summary_.rejected;
     document["evaluations"] = summary_.evaluations;
     document["events"] = summary_.events;
+    document["crossings"] = nlohmann::ordered_json::array();
+    for (const koppel_crossing& crossing : crossings_) {
+      document["crossings"].push_back({{"watch", model_.name(KOPPEL_KIND_WATCH, crossing.watch)},
+                                       {"time", crossing.time},
+                                       {"rising", crossing.rising != 0},
+                                       {"stop", crossing.stop != 0}});
+    }
     document["seconds"] = seconds_;
     document["energy"] = summary_.energy;
     document["energy_error"] = summary_.energy_error;
@@ -128,6 +135,17 @@ class Simulate {
     char text[48];
     std::snprintf(text, sizeof text, ", %.2g of what moves", ratio);
     return text;
+  }
+
+  void print_crossings(std::FILE* out) const {
+    constexpr std::size_t most = 10;
+    for (std::size_t i = 0; i < std::min(most, crossings_.size()); ++i) {
+      const koppel_crossing& crossing = crossings_[i];
+      std::fprintf(out, "crossed     %s at %.9g s, %s%s\n", model_.name(KOPPEL_KIND_WATCH, crossing.watch).c_str(),
+                   crossing.time, crossing.rising != 0 ? "rising" : "falling",
+                   crossing.stop != 0 ? ": stopped there" : "");
+    }
+    if (crossings_.size() > most) std::fprintf(out, "            and %zu more\n", crossings_.size() - most);
   }
 
   std::string name_by(koppel_status (*name)(const koppel_simulation*, char*, size_t, size_t*)) const {
@@ -181,24 +199,33 @@ class Simulate {
     return good(comparison_->begin(motion_.state.get(), simulation, how, error_));
   }
 
+  /// To a row's time, with a row for each crossing on the way; no further than to one that stops.
   bool advance(double time) {
     koppel_state* state = motion_.state.get();
-    if (!good(koppel_simulation_advance(simulation_.get(), time, state, &error_))) return false;
-    return recorded(recorder_.write(motion_, time, nullptr)) &&
-           (!comparison_ || good(comparison_->compare(state, time, error_)));
+    auto crossing = sized<koppel_crossing>();
+    do {
+      if (!good(koppel_simulation_watch(simulation_.get(), time, state, &crossing, &error_))) return false;
+      reached_ = koppel_simulation_time(simulation_.get());
+      if (!recorded(recorder_.write(motion_, reached_, nullptr))) return false;
+      if (crossing.watch == KOPPEL_NO_WATCH) break;
+      crossings_.push_back(crossing);
+      stopped_ = crossing.stop != 0;
+    } while (!stopped_ && reached_ < time);
+    return !comparison_ || good(comparison_->compare(state, reached_, error_));
   }
 
   /// Saves the simulation where it is time, and at the end.
-  bool keep(double time) {
+  bool keep() {
     if (options_.checkpoint.empty()) return true;
-    const bool due = options_.every > 0.0 && time >= next_;
-    if (due) next_ = time + options_.every;
-    return (!due && time < duration_) || good(write_checkpoint(simulation_.get(), options_.checkpoint, error_));
+    const bool due = options_.every > 0.0 && reached_ >= next_;
+    if (due) next_ = reached_ + options_.every;
+    return (!due && !stopped_ && reached_ < duration_) ||
+           good(write_checkpoint(simulation_.get(), options_.checkpoint, error_));
   }
 
   void show_progress(std::uint32_t row) const {
     if (options_.quiet || options_.json || isatty(STDERR_FILENO) == 0) return;
-    const bool last = row == rows_;
+    const bool last = row == rows_ || stopped_;
     if (last || row * 100ull / rows_ != (row + 1) * 100ull / rows_) {
       std::fprintf(stderr, "\r%.4g of %.4g s%s", reached_, duration_, last ? "\r\033[K" : "");
     }
@@ -213,6 +240,8 @@ class Simulate {
   double duration_, reached_ = 0.0, seconds_ = 0.0;
   double resumed_at_ = -1.0, next_;  ///< where it was saved before; where it is to be saved next
   Recorder recorder_;
+  std::vector<koppel_crossing> crossings_;
+  bool stopped_ = false;  ///< by a crossing
   koppel_simulation_summary summary_ = sized<koppel_simulation_summary>();
   koppel_error error_ = sized<koppel_error>();
   Exit outcome_ = Exit::fine;

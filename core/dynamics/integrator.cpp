@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include "dynamics/arkode.hpp"
 #include "dynamics/cvode.hpp"
 #include "dynamics/generalised_alpha.hpp"
 #include "dynamics/ida.hpp"

@@ -9,7 +9,7 @@
 #include "dynamics/chart.hpp"
 #include "dynamics/differential_equation.hpp"
 #include "dynamics/equations_of_motion.hpp"
-#include "dynamics/formulation.hpp"
+#include "scene/formulations.hpp"
 
 namespace koppel {
 

@@ -45,6 +45,7 @@ Simulation::Simulation(std::shared_ptr<const Mechanism> mechanism, Inertias iner
       motion_(mechanism, std::move(inertias)),
       equation_(make_equation(options.formulation, motion_)),
       watch_(motion_, *equation_),
+      crossings_(motion_, *equation_),
       a_(mechanism->nv) {}
 
 Result<std::unique_ptr<Simulation>> Simulation::of(std::shared_ptr<const Mechanism> mechanism,
@@ -177,6 +178,7 @@ Result<void> Simulation::start(const State& state) {
   shown_ = state.time;
   failed_.reset();
   worn_ = equation_->is_worn();
+  crossings_.take_sides();
   return {};
 }
 
@@ -219,22 +221,46 @@ Result<void> Simulation::step(double limit) {
 
 Result<void> Simulation::advance(double time, State& state) {
   if (failed_) return tl::make_unexpected(*failed_);
-  auto gone = go_to(time);
-  if (gone) gone = show(time, state);
+  auto gone = [&]() -> Result<void> {
+    while (method_->time() < time) KOPPEL_CHECK(go_on(time));
+    return show(time, state);
+  }();
+  if (gone) crossings_.take_sides();
   if (!gone) failed_ = gone.error();
   return gone;
 }
 
-Result<void> Simulation::go_to(double time) {
-  // Steps of a fixed length end where something is to be seen; others are read between their ends.
-  const double limit = options_.step > 0.0 ? time : std::max(options_.end, time);
-  while (method_->time() < time) {
-    KOPPEL_CHECK(step(limit));
-    if (!judge()) return stuck(method_->time());
-    y_ = method_->y();
-    if (!equation_->settle(method_->time(), y_)) return stuck(method_->time());
-    method_->settle(y_);
+Result<std::optional<Crossing>> Simulation::advance_watching(double time, State& state) {
+  if (failed_) return tl::make_unexpected(*failed_);
+  auto found = go_watching(time);
+  if (found) {
+    if (auto shown = show(*found ? (*found)->time : time, state); !shown) found = tl::make_unexpected(shown.error());
   }
+  if (!found) failed_ = found.error();
+  return found;
+}
+
+/// To a time, or to the first crossing before it.
+Result<std::optional<Crossing>> Simulation::go_watching(double time) {
+  std::optional<Crossing> found;
+  for (double from = shown_;;) {
+    const double until = std::min(time, method_->time());
+    if (until > from && !crossings_.find(*method_, from, until, found))
+      return tl::make_unexpected(stuck(until).error());
+    if (found || method_->time() >= time) return found;
+    from = std::max(from, until);
+    KOPPEL_CHECK(go_on(time));
+  }
+}
+
+/// One step on the way to a time.
+Result<void> Simulation::go_on(double time) {
+  // Steps of a fixed length end where something is to be seen; others are read between their ends.
+  KOPPEL_CHECK(step(options_.step > 0.0 ? time : std::max(options_.end, time)));
+  if (!judge()) return stuck(method_->time());
+  y_ = method_->y();
+  if (!equation_->settle(method_->time(), y_)) return stuck(method_->time());
+  method_->settle(y_);
   return {};
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "dynamics/archive.hpp"
+#include "dynamics/crossings.hpp"
 #include "dynamics/equations_of_motion.hpp"
 #include "dynamics/integrator.hpp"
 #include "dynamics/motion_equation.hpp"
@@ -47,9 +48,11 @@ class Simulation {
   /// On to a time not before the last one. state: there, with all rates and accelerations. On an error it is as before,
   /// and the simulation goes no further.
   Result<void> advance(double time, State& state);
+  /// The same, but no further than to the first crossing of a value that the scene watches. Nothing: there is none.
+  Result<std::optional<Crossing>> advance_watching(double time, State& state);
 
   /// All that it goes on from: the same simulation goes on bit for bit as what is loaded from it. An integrator of a
-  /// library (cvode) starts again at the time that was shown last, here and there.
+  /// library (SUNDIALS) starts again at the time that was shown last, here and there.
   Result<std::vector<unsigned char>> save();
   /// What was saved, of the same scene; advance() to shown() gives the state. Errors: those of of(), invalid_argument:
   /// not saved, by another version, damaged, or of another scene.
@@ -71,7 +74,8 @@ class Simulation {
   double pull() const;
   Result<void> take_rates(const State& state);
   Result<void> step(double limit);
-  Result<void> go_to(double time);
+  Result<void> go_on(double time);
+  Result<std::optional<Crossing>> go_watching(double time);
   bool judge();
   bool exchange(Archive& archive);
   Result<void> show(double time, State& state);
@@ -81,6 +85,7 @@ class Simulation {
   EquationsOfMotion motion_;
   std::unique_ptr<MotionEquation> equation_;
   SwitchWatch watch_;
+  Crossings crossings_;
   std::unique_ptr<Integrator> method_;
   Eigen::VectorXd y_, a_;
   SimulationSummary summary_;

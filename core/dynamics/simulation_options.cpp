@@ -7,19 +7,22 @@ namespace {
 
 constexpr double default_tolerance = 1e-8;
 
-/// The formulation that is asked for; null: none is.
-Result<const FormulationName*> choose_formulation(std::string_view name) {
-  const FormulationName* asked = find_formulation(name);
-  if (name.empty() || asked != nullptr) return asked;
-  std::string list;
-  for (const FormulationName& x : formulations()) list += (list.empty() ? "" : ", ") + std::string(x.name);
-  return tl::make_unexpected(make_error(Code::unknown_formulation, {},
-                                        "there is no formulation `" + std::string(name) + "`", "there are: " + list));
-}
-
-bool solves(const IntegratorName& integrator, const FormulationName& formulation) {
-  return formulation.integrator ? formulation.integrator == integrator.kind
-                                : !formulation_for(integrator.kind).integrator;
+/// The formulation that is asked for, or the scene's where it goes with what else is asked for; null: neither.
+Result<const FormulationName*> choose_formulation(std::string_view name, std::string_view integrator, double tolerance,
+                                                  double step, const SimulationDescription& scene) {
+  if (!name.empty()) {
+    if (const FormulationName* asked = find_formulation(name)) return asked;
+    return tl::make_unexpected(
+        make_error(Code::unknown_formulation, {}, no_such_formulation(name), formulation_choices()));
+  }
+  const FormulationName* described = find_formulation(scene.formulation);
+  if (described == nullptr) return described;
+  const IntegratorName* asked = find_integrator(integrator);
+  if (asked != nullptr) return clash(*asked, *described) ? nullptr : described;
+  if (!described->integrator) return described;
+  const StepControl control = integrators()[static_cast<std::size_t>(*described->integrator)].control;
+  const bool other = control == StepControl::tolerance ? step > 0.0 : tolerance > 0.0;
+  return other ? nullptr : described;
 }
 
 /// The integrator that is asked for, or the scene's where it goes with what is asked for, or the default one.
@@ -38,41 +41,24 @@ Result<const IntegratorName*> choose(const FormulationName* formulation, std::st
   const StepControl control = steps ? StepControl::step : StepControl::tolerance;
   const IntegratorName* described = find_integrator(scene.integrator);
   const bool fits = described != nullptr && described->control == control &&
-                    (formulation == nullptr || solves(*described, *formulation));
+                    (formulation == nullptr || !clash(*described, *formulation));
   return fits ? described : &default_integrator(control);
-}
-
-Result<void> check(const IntegratorName& integrator, const FormulationName& formulation) {
-  const std::string element = "integrator " + std::string(integrator.name);
-  if (!solves(integrator, formulation)) {
-    const std::string_view other = formulation.integrator
-                                       ? integrators()[static_cast<std::size_t>(*formulation.integrator)].name
-                                       : default_integrator(integrator.control).name;
-    return tl::make_unexpected(make_error(Code::conflicting_keys, element,
-                                          "does not solve the formulation " + std::string(formulation.name),
-                                          "take the formulation " + std::string(formulation_for(integrator.kind).name) +
-                                              ", or the integrator " + std::string(other)));
-  }
-  if (formulation.kind == Formulation::projected && integrator.kind == IntegratorKind::cvode) {
-    return tl::make_unexpected(make_error(Code::conflicting_keys, element,
-                                          "goes on from what it remembers, not from what is projected",
-                                          "take the formulation minimal or baumgarte"));
-  }
-  return {};
 }
 
 }  // namespace
 
 Result<SimulationOptions> simulation_options(std::string_view formulation, std::string_view integrator,
                                              double tolerance, double step, const SimulationDescription& scene) {
-  KOPPEL_TRY(const FormulationName* asked, choose_formulation(formulation));
+  KOPPEL_TRY(const FormulationName* asked, choose_formulation(formulation, integrator, tolerance, step, scene));
   KOPPEL_TRY(const IntegratorName* chosen, choose(asked, integrator, tolerance, step, scene));
   const FormulationName& way = asked != nullptr ? *asked : formulation_for(chosen->kind);
-  KOPPEL_CHECK(check(*chosen, way));
+  const std::string element = "integrator " + std::string(chosen->name);
+  if (const auto found = clash(*chosen, way)) {
+    return tl::make_unexpected(make_error(Code::conflicting_keys, element, found->why, found->advice));
+  }
   SimulationOptions options;
   options.integrator = chosen->kind;
   options.formulation = way.kind;
-  const std::string element = "integrator " + std::string(chosen->name);
   if (chosen->control == StepControl::tolerance) {
     if (step > 0.0) {
       return tl::make_unexpected(make_error(Code::conflicting_keys, element, "adapts its steps to a tolerance",

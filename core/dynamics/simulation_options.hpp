@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
-#include "dynamics/formulation.hpp"
+#include "scene/formulations.hpp"
 #include "scene/integrators.hpp"
 #include "scene/scene.hpp"
 

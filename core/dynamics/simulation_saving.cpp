@@ -7,7 +7,7 @@ namespace koppel {
 namespace {
 
 constexpr std::array<char, 8> mark{'k', 'o', 'p', 'p', 'e', 'l', 's', 'm'};
-constexpr std::uint32_t version = 1;  // of the order in which members are told
+constexpr std::uint32_t version = 2;  // of the order in which members are told
 
 /// FNV-1a: tells a damaged file, not a forged one.
 std::uint64_t sum_of(std::span<const unsigned char> bytes) {
@@ -32,7 +32,8 @@ bool Simulation::exchange(Archive& archive) {
   SimulationSummary& s = summary_;
   archive(s.steps, s.rejected, s.evaluations, s.events, s.switches, s.energy, s.energy_error, s.energy_size);
   archive(s.position_drift, s.velocity_drift, s.stiff, s.start_change);
-  return archive.good() && equation_->exchange(archive) && method_->exchange(archive) && watch_.exchange(archive);
+  return archive.good() && equation_->exchange(archive) && method_->exchange(archive) && watch_.exchange(archive) &&
+         crossings_.exchange(archive);
 }
 
 Result<std::vector<unsigned char>> Simulation::save() {

@@ -1,4 +1,4 @@
-// What SUNDIALS holds for an integrator: its context, a vector, and a dense matrix with its solver.
+// What SUNDIALS holds for an integrator: its context, vectors, and a dense matrix with its solver.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ inline constexpr double no_weight = 1e-100;
 
 struct SundialsVectors {
   SUNContext context = nullptr;
-  N_Vector y = nullptr, y_rate = nullptr;
+  N_Vector y = nullptr, y_rate = nullptr, scratch = nullptr;
   SUNMatrix matrix = nullptr;
   SUNLinearSolver solver = nullptr;
 
@@ -38,9 +38,10 @@ struct SundialsVectors {
     if (context != nullptr) {
       y = N_VNew_Serial(n, context);
       y_rate = N_VNew_Serial(n, context);
+      scratch = N_VNew_Serial(n, context);
       matrix = SUNDenseMatrix(n, n, context);
     }
-    if (y != nullptr && y_rate != nullptr && matrix != nullptr) {
+    if (y != nullptr && y_rate != nullptr && scratch != nullptr && matrix != nullptr) {
       N_VConst(0.0, y);
       N_VConst(0.0, y_rate);
       solver = SUNLinSol_Dense(y, matrix, context);
@@ -57,6 +58,7 @@ struct SundialsVectors {
   void release() {
     if (solver != nullptr) SUNLinSolFree(solver);
     if (matrix != nullptr) SUNMatDestroy(matrix);
+    if (scratch != nullptr) N_VDestroy(scratch);
     if (y_rate != nullptr) N_VDestroy(y_rate);
     if (y != nullptr) N_VDestroy(y);
     if (context != nullptr) SUNContext_Free(&context);

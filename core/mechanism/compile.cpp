@@ -64,6 +64,12 @@ class Compiler {
       }
       m().joints.push_back(std::move(joint));
     }
+    for (const WatchDescription& watch : scene_.watches) {
+      const Joint& joint = m().joints[watch.of.joint.index()];
+      const JointBlock& block = joint.blocks[watch.of.block];
+      const std::uint32_t at = watch.rate ? joint.v + block.v : joint.q + block.q;
+      m().watches.push_back({watch.name, watch.rate, at, watch.value, watch.direction, watch.stop});
+    }
     m().coordinate_names = coordinate_names(m());
     m().rate_names = rate_names(m());
     must_stay_.assign(m().joints.size(), false);

@@ -93,6 +93,16 @@ struct NamedNumber {
   std::string unit;
 };
 
+/// A value of a coordinate or a rate that a simulation looks out for.
+struct Watch {
+  std::string name;
+  bool rate = false;
+  std::uint32_t at = 0;  ///< in q, or in v for a rate
+  double value = 0.0;
+  Direction direction = Direction::either;
+  bool stop = false;
+};
+
 struct Body {
   std::string name;
   const BodyType* type = nullptr;  ///< null for the ground
@@ -134,6 +144,7 @@ class Mechanism {
   std::shared_ptr<const Mechanism> with_start_held;
   std::vector<Force> forces;
   Eigen::VectorXd internal_start;  ///< internal states of all forces, where they start
+  std::vector<Watch> watches;
   std::vector<RecordDescription> records;
   std::vector<RecordColumn> record_columns;
   bool records_loads = false;  ///< some record asks for what joints or drives bear

@@ -103,6 +103,10 @@ void declare_elements(Reading& reading, Scope& scope) {
     append(scene.drives, element).source = std::move(source);
     return reading.drive_names.insert(element.name).second;
   });
+  declare(reading, scope, {"watch", false, reading.watches}, [&](Element& element, Source) {
+    append(scene.watches, element);
+    return element.name.empty() || reading.watch_names.insert(element.name).second;
+  });
   declare(reading, scope, {"record", false, reading.records}, [&](Element& element, Source) {
     append(scene.records, element);
     return element.name.empty() || reading.record_names.insert(element.name).second;

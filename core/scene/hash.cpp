@@ -105,12 +105,21 @@ class Stream {
     }
     // Scenes without one keep the hash that they had before there was a choice.
     if (!simulation.integrator.empty()) add(simulation.integrator);
+    if (!simulation.formulation.empty()) add("formulation " + simulation.formulation);
   }
   void add(const DriveDescription& drive) {
     add(drive.name);
     add(drive.of);
     add(drive.type);
     add(drive.values);
+  }
+  void add(const WatchDescription& watch) {
+    add(watch.name);
+    add(watch.of);
+    add(watch.rate);
+    add(watch.value);
+    add(static_cast<std::uint64_t>(watch.direction));
+    add(watch.stop);
   }
   void add(const RecordDescription& record) {
     add(record.name);
@@ -146,6 +155,8 @@ std::uint64_t scene_hash(const Scene& scene) {
   stream.add(scene.forces);
   stream.add(scene.drives);
   stream.add(scene.records);
+  // As above.
+  if (!scene.watches.empty()) stream.add(scene.watches);
   return stream.hash();
 }
 

@@ -29,8 +29,9 @@ bool check_schema(const Scope& scope, const Reporter& report) {
 }
 
 void check_tables(const Node& root, const Reporter& report) {
-  const std::vector<std::string> tables = {"schema", "scene",      "parameters", "simulation", "body",   "frame",
-                                           "joint",  "constraint", "force",      "drive",      "record", "include"};
+  const std::vector<std::string> tables = {"schema", "scene",  "parameters", "simulation", "body",
+                                           "frame",  "joint",  "constraint", "force",      "drive",
+                                           "watch",  "record", "include"};
   for (const Node::Key& key : root.keys) {
     if (std::find(tables.begin(), tables.end(), key.text) != tables.end()) continue;
     std::string advice = did_you_mean(key.text, tables);

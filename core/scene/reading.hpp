@@ -42,8 +42,8 @@ struct Reading {
   std::vector<std::unique_ptr<Scope>> scopes;  ///< the scene itself first, included ones after those that include them
   Names names;
   Scene scene;
-  std::vector<Element> bodies, frames, joints, constraints, forces, drives, records;
-  std::set<std::string> constraint_names, force_names, drive_names, record_names;
+  std::vector<Element> bodies, frames, joints, constraints, forces, drives, watches, records;
+  std::set<std::string> constraint_names, force_names, drive_names, watch_names, record_names;
   std::set<std::uint32_t> faulty_frames;  ///< their faults are reported; what sits on them says nothing
   std::set<std::string> faulty_plugins;   ///< reported once, however many elements ask for them
   /// For each joint and block where `start` and `start_rate` stand; line 0: nowhere.
@@ -84,6 +84,7 @@ void read_joint(Reading& reading, const Element& element);
 void read_constraint(Reading& reading, const Element& element);
 void read_force(Reading& reading, const Element& element);
 void read_drive(Reading& reading, const Element& element);
+void read_watch(Reading& reading, const Element& element);
 void read_record(Reading& reading, const Element& element);
 /// Gives a free joint to the first body of each component that no joint connects to the ground.
 void add_free_joints(Reading& reading);

@@ -36,6 +36,7 @@ Result<Scene> read_document(Registry& registry, std::unique_ptr<Document> docume
   for (const Element& element : reading.constraints) read_constraint(reading, element);
   for (const Element& element : reading.forces) read_force(reading, element);
   for (const Element& element : reading.drives) read_drive(reading, element);
+  for (const Element& element : reading.watches) read_watch(reading, element);
   for (const Element& element : reading.records) read_record(reading, element);
   for (const auto& scope : reading.scopes) scope->parameters.report_unused(reading.reporter(*scope, ""));
   if (!reading.findings.has_errors()) add_free_joints(reading);

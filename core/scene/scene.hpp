@@ -119,11 +119,24 @@ struct RecordDescription {
   Attachment frame;
 };
 
+enum class Direction { either, rising, falling };
+
+/// A value that a simulation looks out for.
+struct WatchDescription {
+  std::string name;  ///< "joint.coordinate" or "joint.coordinate.rate" unless the scene names it
+  CoordinateReference of;
+  bool rate = false;   ///< of the coordinate's rate, not of itself
+  double value = 0.0;  ///< [m, rad, m/s, rad/s] that is crossed
+  Direction direction = Direction::either;
+  bool stop = false;  ///< the simulation ends there
+};
+
 /// How a simulation is made, where the scene says so.
 struct SimulationDescription {
   std::optional<double> tolerance;  ///< relative, of one step
   std::optional<double> step;       ///< [s]
   std::string integrator;           ///< empty: the default one
+  std::string formulation;          ///< empty: the one that goes with the integrator
 };
 
 struct Scene {
@@ -140,6 +153,7 @@ struct Scene {
   std::vector<ConstraintDescription> constraints;
   std::vector<DriveDescription> drives;
   std::vector<ForceDescription> forces;
+  std::vector<WatchDescription> watches;
   std::vector<RecordDescription> records;  ///< all coordinates, if the scene has no [[record]]
   std::uint64_t hash = 0;  ///< of the content, includes and parameters applied; not of comments or layout
 };

@@ -167,4 +167,10 @@ std::optional<std::string> ValueReader::text(const Node& node, std::string_view 
   return std::nullopt;
 }
 
+std::optional<bool> ValueReader::truth(const Node& node, std::string_view what) const {
+  if (node.kind == Node::Kind::boolean) return node.truth;
+  wrong_kind(node, what, "true or false");
+  return std::nullopt;
+}
+
 }  // namespace koppel

@@ -42,6 +42,7 @@ class ValueReader {
   /// w x y z of any length but zero, normalised. Error: zero_direction.
   std::optional<Vector4> quaternion(const Node& node, std::string_view what) const;
   std::optional<std::string> text(const Node& node, std::string_view what) const;
+  std::optional<bool> truth(const Node& node, std::string_view what) const;
   bool is_list(const Node& node, std::string_view what, std::size_t count_min, std::size_t count_max,
                std::string_view advice = "") const;
 

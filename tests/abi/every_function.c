@@ -314,12 +314,13 @@ static void simulates_a_pendulum(koppel_engine* engine) {
   static const char text[] =
       "schema = 1\n[scene]\ngravity = [0, -9.81, 0]\nduration = 2\n[[body]]\nname = 'weight'\ntype = 'point_mass'\n"
       "mass = 1\nat = [0, -1, 0]\n[[joint]]\nname = 'pin'\ntype = 'revolute'\ninlet = 'ground'\noutlet = 'weight'\n"
-      "start = { angle = '-90 deg' }\n";
+      "start = { angle = '-90 deg' }\n[[watch]]\nname = 'halfway'\nof = 'pin.angle'\nvalue = '-45 deg'\n";
   koppel_scene* scene = NULL;
   koppel_mechanism* mechanism = NULL;
   koppel_state* state = NULL;
   koppel_work* work = NULL;
   koppel_simulation* simulation = NULL;
+  SIZED(koppel_crossing, crossing);
   SIZED(koppel_simulation_options, options);
   SIZED(koppel_simulation_summary, summary);
   SIZED(koppel_error, error);
@@ -336,6 +337,13 @@ static void simulates_a_pendulum(koppel_engine* engine) {
   CHECK_OK(koppel_close(state, work, NULL, NULL, &error));
   options.tolerance = 1e-10;
   CHECK_OK(koppel_simulation_create(state, &options, &simulation, &error));
+  CHECK_OK(koppel_simulation_watch(simulation, 1.0, state, &crossing, &error));
+  CHECK(crossing.watch == 0 && crossing.rising == 1 && crossing.stop == 0 && crossing.time > 0.0);
+  CHECK(koppel_simulation_time(simulation) == crossing.time);
+  CHECK_OK(koppel_state_get(state, KOPPEL_Q, &q, 1));
+  CHECK_NEAR(q, -0.785398163397448, 1e-14);
+  CHECK_OK(koppel_simulation_watch(simulation, crossing.time, state, &crossing, &error));
+  CHECK(crossing.watch == KOPPEL_NO_WATCH);
   CHECK_OK(koppel_simulation_advance(simulation, 1.0, state, &error));
   CHECK_OK(koppel_state_get(state, KOPPEL_Q, &q, 1));
   CHECK_OK(koppel_state_get(state, KOPPEL_V, &v, 1));

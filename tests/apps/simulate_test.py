@@ -57,8 +57,8 @@ class Simulate(ProgramTest):
     def test_integrators_by_name(self):
         ends = {}
         for name, how in (("dormand_prince", ("--tolerance", "1e-9")), ("dop853", ("--tolerance", "1e-9")),
-                          ("cvode", ("--tolerance", "1e-9")), ("classical", ("--step", "0.001")),
-                          ("semi_implicit", ("--step", "0.001"))):
+                          ("cvode", ("--tolerance", "1e-9")), ("arkode", ("--tolerance", "1e-9")),
+                          ("classical", ("--step", "0.001")), ("semi_implicit", ("--step", "0.001"))):
             document = self.json(FINE, "simulate", DYNAMICS / "fourbar_free.toml", "--duration", "1", "--integrator",
                                  name, *how)
             self.assertEqual(document["integrator"], name)
@@ -67,10 +67,36 @@ class Simulate(ProgramTest):
         for name, end in ends.items():
             self.assertAlmostEqual(end, ends["dop853"], delta=0.05 if name == "semi_implicit" else 1e-5)
 
+    def test_crossings_are_told_and_stop_the_motion(self):
+        watches = """
+[[watch]]
+name = "lowest"
+of = "pivot.angle"
+value = 0
+[[watch]]
+name = "turns"
+of = "pivot.angle"
+quantity = "rate"
+stop = true
+"""
+        scene = self.write("watched.toml", (DYNAMICS / "pendulum.toml").read_text() + watches)
+        document = self.json(FINE, "simulate", scene, "--tolerance", "1e-10", "--csv", "rows.csv")
+        self.assertEqual([crossing["watch"] for crossing in document["crossings"]], ["lowest", "turns"])
+        lowest, turns = document["crossings"]
+        self.assertFalse(lowest["stop"])
+        self.assertTrue(turns["stop"])
+        self.assertAlmostEqual(turns["time"], 2 * lowest["time"], delta=1e-7)
+        self.assertEqual(document["time"], turns["time"])
+        rows = (self.folder / "rows.csv").read_text().splitlines()
+        self.assertAlmostEqual(float(rows[-1].split(",")[0]), turns["time"], delta=1e-12)
+        text = self.expect(FINE, "koppel", "simulate", scene)
+        self.assertIn("turns", text.stdout)
+        self.assertIn("stopped there", text.stdout)
+
     def test_an_unknown_integrator_is_told_the_choices(self):
         document = self.json(USAGE, "simulate", DYNAMICS / "pendulum.toml", "--integrator", "rk45")
         self.assertEqual(document["error"]["code"], "E0309")
-        for name in ("dormand_prince", "classical", "dop853", "cvode", "semi_implicit"):
+        for name in ("dormand_prince", "classical", "dop853", "cvode", "arkode", "semi_implicit"):
             self.assertIn(name, document["error"]["advice"])
 
     def test_formulations_are_chosen_by_name(self):

@@ -1,6 +1,8 @@
 """Simulation and reactions from Python."""
 
 import math
+import pathlib
+import tempfile
 import unittest
 
 import numpy
@@ -19,6 +21,29 @@ class Simulation(unittest.TestCase):
         self.assertLess(abs(math.sin(table["pivot.angle"][-1]) + 0.275087462576116860), summary.steps * 1e-10)
         self.assertEqual(summary.freedoms, 1)
         self.assertLess(summary.energy_error, summary.steps * 1e-10 * summary.energy_size)
+
+    def test_stops_where_the_scene_wants_it(self):
+        text = (DYNAMICS / "pendulum.toml").read_text() + """
+[[watch]]
+name = "aloft"
+of = "pivot.angle"
+value = "-0.5 rad"
+stop = true
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder) / "pendulum.toml"
+            scene.write_text(text)
+            mechanism = koppel.load(scene)
+        self.assertEqual(mechanism.watches, ["aloft"])
+        table, summary = koppel.simulate(mechanism, tolerance=1e-10)
+        self.assertLess(table["time"][-1], mechanism.duration)
+        self.assertAlmostEqual(table["pivot.angle"][-1], -0.5, delta=1e-12)
+        state = mechanism.state()
+        state.close()
+        with koppel.Simulation(state, tolerance=1e-10) as simulation:
+            crossing = simulation.watch(10.0, state)
+            self.assertEqual(crossing, koppel.Crossing("aloft", table["time"][-1], crossing.rising, True))
+            self.assertIsNone(simulation.watch(crossing.time, state))
 
     def test_goes_on_from_the_rates_that_a_state_has(self):
         mechanism = koppel.load(DYNAMICS / "double_pendulum.toml")

@@ -199,6 +199,7 @@ TEST(Formulations, ThatAreNotKnownAreToldTheChoices) {
   const auto clash = simulation_options("projected", "cvode", 0.0, 0.0, scene);
   ASSERT_FALSE(clash);
   EXPECT_EQ(clash.error().code, Code::conflicting_keys);
+  EXPECT_EQ(simulation_options("projected", "arkode", 0.0, 0.0, scene)->formulation, Formulation::projected);
   EXPECT_EQ(simulation_options("baumgarte", "cvode", 0.0, 0.0, scene)->formulation, Formulation::baumgarte);
 }
 
@@ -208,6 +209,16 @@ TEST(Formulations, BringTheirIntegratorsAndIntegratorsTheirFormulations) {
   EXPECT_EQ(simulation_options("index3", "", 0.0, 1e-3, scene)->integrator, IntegratorKind::generalised_alpha);
   EXPECT_EQ(simulation_options("", "ida", 0.0, 0.0, scene)->formulation, Formulation::ggl);
   EXPECT_EQ(simulation_options("", "generalised_alpha", 0.0, 1e-3, scene)->formulation, Formulation::index3);
+  // That of the scene, unless something that is asked for does not go with it.
+  scene.formulation = "ggl";
+  EXPECT_EQ(simulation_options("", "", 0.0, 0.0, scene)->integrator, IntegratorKind::ida);
+  EXPECT_EQ(simulation_options("", "", 0.0, 1e-3, scene)->formulation, Formulation::minimal);
+  EXPECT_EQ(simulation_options("", "dop853", 0.0, 0.0, scene)->formulation, Formulation::minimal);
+  EXPECT_EQ(simulation_options("baumgarte", "", 0.0, 0.0, scene)->integrator, IntegratorKind::dormand_prince);
+  scene.formulation = "baumgarte";
+  EXPECT_EQ(simulation_options("", "dop853", 0.0, 0.0, scene)->formulation, Formulation::baumgarte);
+  EXPECT_EQ(simulation_options("", "ida", 0.0, 0.0, scene)->formulation, Formulation::ggl);
+  scene.formulation.clear();
   EXPECT_EQ(simulation_options("index3", "", 0.0, 0.0, scene).error().code, Code::missing_key);
   EXPECT_EQ(simulation_options("ggl", "", 0.0, 1e-3, scene).error().code, Code::conflicting_keys);
   for (const auto& [formulation, integrator] :

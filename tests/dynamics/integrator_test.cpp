@@ -10,9 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamics/formulation.hpp"
 #include "dynamics/runge_kutta.hpp"
 #include "dynamics/semi_implicit.hpp"
+#include "scene/formulations.hpp"
 
 namespace koppel {
 namespace {

@@ -14,7 +14,8 @@ constexpr double bar_after_a_second = -3.3378708031050977;  // A02, as in simula
 /// The parallelogram's angle' = -3.4 at most, and it starts upright, where disturbances grow by e^(3.4 t) (11.445 is
 /// the square of 3.4): times 30 in a second, in two components.
 TEST(IntegratorsOfMechanisms, AgreeOnLoops) {
-  for (const IntegratorKind kind : {IntegratorKind::dormand_prince, IntegratorKind::dop853, IntegratorKind::cvode}) {
+  for (const IntegratorKind kind :
+       {IntegratorKind::dormand_prince, IntegratorKind::dop853, IntegratorKind::cvode, IntegratorKind::arkode}) {
     for (const double tolerance : {1e-6, 1e-9}) {
       Simulated run(scene("nfourbar"), by(kind, tolerance, 0.0, 1.0));
       run.to(1.0);
@@ -64,7 +65,8 @@ TEST(IntegratorsOfMechanisms, FixedStepsKeepTheirOrders) {
 TEST(IntegratorsOfMechanisms, AgreeOnATumblingBody) {
   Simulated reference(scene("free_body"), by(IntegratorKind::dormand_prince, 1e-12, 0.0, 2.0));
   reference.to(2.0);
-  for (const IntegratorKind kind : {IntegratorKind::dop853, IntegratorKind::cvode, IntegratorKind::classical}) {
+  for (const IntegratorKind kind :
+       {IntegratorKind::dop853, IntegratorKind::cvode, IntegratorKind::arkode, IntegratorKind::classical}) {
     const bool fixed = kind == IntegratorKind::classical;
     Simulated run(scene("free_body"), by(kind, fixed ? 0.0 : 1e-9, fixed ? 1e-3 : 0.0, 2.0));
     run.to(2.0);

@@ -23,12 +23,16 @@ struct Way {
 
 /// In rows; saved and loaded at every third of them, and beside it saved only: libraries start again there.
 TEST(Saving, GoesOnBitForBit) {
-  const Way ways[] = {
-      {"andrews", IntegratorKind::dormand_prince, 0.03},  {"andrews", IntegratorKind::cvode, 0.03},
-      {"bricard", IntegratorKind::dop853, 2.0},           {"bricard", IntegratorKind::classical, 1.0},
-      {"free_body", IntegratorKind::dormand_prince, 2.0}, {"fourbar_free", IntegratorKind::semi_implicit, 0.5},
-      {"fourbar_free", IntegratorKind::ida, 0.5},         {"free_body", IntegratorKind::generalised_alpha, 2.0},
-      {"bricard", IntegratorKind::generalised_alpha, 1.0}};
+  const Way ways[] = {{"andrews", IntegratorKind::dormand_prince, 0.03},
+                      {"andrews", IntegratorKind::cvode, 0.03},
+                      {"andrews", IntegratorKind::arkode, 0.01},
+                      {"bricard", IntegratorKind::dop853, 2.0},
+                      {"bricard", IntegratorKind::classical, 1.0},
+                      {"free_body", IntegratorKind::dormand_prince, 2.0},
+                      {"fourbar_free", IntegratorKind::semi_implicit, 0.5},
+                      {"fourbar_free", IntegratorKind::ida, 0.5},
+                      {"free_body", IntegratorKind::generalised_alpha, 2.0},
+                      {"bricard", IntegratorKind::generalised_alpha, 1.0}};
   for (const Way& way : ways) {
     SCOPED_TRACE(std::string(way.scene) + " by " +
                  std::string(integrators()[static_cast<std::size_t>(way.integrator)].name));

@@ -36,7 +36,8 @@ constexpr double end = 5.0;
 
 /// Errors of steps are within the tolerance each; a velocity that is off shifts what follows, by less than t of it.
 TEST(SwitchWatch, ABallBouncesWithinTheTolerance) {
-  for (const IntegratorKind kind : {IntegratorKind::dormand_prince, IntegratorKind::dop853, IntegratorKind::cvode}) {
+  for (const IntegratorKind kind :
+       {IntegratorKind::dormand_prince, IntegratorKind::dop853, IntegratorKind::cvode, IntegratorKind::arkode}) {
     for (const double tolerance : {1e-6, 1e-9}) {
       Simulated run(bouncing, by(kind, tolerance, 0.0, end));
       run.to(end);

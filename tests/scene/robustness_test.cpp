@@ -21,6 +21,10 @@ const std::string good_scene =
     "start = { rotation = [1, 0, 0, 0] }\n"
     "[[constraint]]\nname = 'rod'\ntype = 'distance'\nfrom = 'tip'\nto = 'ground'\ndistance = '0.5 m'\n"
     "[[drive]]\nof = 'pin.angle'\ntype = 'table'\npoints = [[0, 0], [1, '1 rev'], [2, 3]]\n"
+    "[[force]]\nname = 'coil'\ntype = 'spring'\nfrom = 'tip'\nto = 'ground'\nstiffness = '2e3'\nlength = '300 mm'\n"
+    "[[force]]\nname = 'brake'\ntype = 'coordinate_spring'\nof = 'pin.angle'\nstiffness = 10\ndamping = 0.1\n"
+    "[[watch]]\nof = 'pin.angle'\nquantity = 'rate'\nvalue = '-5 deg'\ndirection = 'falling'\nstop = true\n"
+    "[simulation]\nintegrator = 'ida'\nformulation = 'ggl'\ntolerance = 1e-6\n"
     "[[record]]\nof = 'ball'\nquantity = 'cardan'\n";
 
 /// Reads the text; a scene comes without errors, errors come with a place in the text.

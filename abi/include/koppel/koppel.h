@@ -125,6 +125,7 @@ typedef struct koppel_sizes {
   uint32_t constraints; /* constraint elements, not counting cut joints */
   uint32_t equations;   /* closure equations in all */
   uint32_t unknowns;    /* rates that a closure solves for */
+  uint32_t watches;     /* values that a simulation looks out for */
 } koppel_sizes;
 
 KOPPEL_EXPORT koppel_status koppel_mechanism_sizes(const koppel_mechanism* mechanism, koppel_sizes* sizes);
@@ -149,7 +150,8 @@ enum {
   KOPPEL_KIND_INPUT = 6,
   KOPPEL_KIND_RECORD = 7,
   KOPPEL_KIND_EQUATION = 8,
-  KOPPEL_KIND_SCENE = 9 /* index 0: name, 1: title */
+  KOPPEL_KIND_SCENE = 9, /* index 0: name, 1: title */
+  KOPPEL_KIND_WATCH = 10
 };
 
 /* Name and unit of the index-th thing of a kind. Units: "m", "rad", "m/s", "1", ...; bodies and frames have "". */
@@ -453,13 +455,29 @@ KOPPEL_EXPORT void koppel_simulation_destroy(koppel_simulation* simulation);
  * the same error comes again. */
 KOPPEL_EXPORT koppel_status koppel_simulation_advance(koppel_simulation* simulation, double time, koppel_state* state,
                                                       koppel_error* error);
+
+/* Where a value that the scene watches was crossed. */
+typedef struct koppel_crossing {
+  uint32_t struct_size;
+  uint32_t watch; /* among the scene's; KOPPEL_NO_WATCH: none */
+  double time;    /* [s] the first at which it lies on the other side, to rounding */
+  int32_t rising; /* 1: from below, 0: from above */
+  int32_t stop;   /* 1: the scene wants the simulation to end there */
+} koppel_crossing;
+#define KOPPEL_NO_WATCH UINT32_MAX
+
+/* As koppel_simulation_advance, but no further than to the first crossing of a value that the scene watches: the state
+ * comes out there, and the next call goes on. The motion is the same whether it is watched or not. A value that is
+ * crossed twice between two calls, or within one step, passes unnoticed. */
+KOPPEL_EXPORT koppel_status koppel_simulation_watch(koppel_simulation* simulation, double time, koppel_state* state,
+                                                    koppel_crossing* crossing, koppel_error* error);
 KOPPEL_EXPORT koppel_status koppel_simulation_summarise(const koppel_simulation* simulation,
                                                         koppel_simulation_summary* summary);
 /* Where it stands: the time that was advanced to last, or the start [s]; 0 for NULL. */
 KOPPEL_EXPORT double koppel_simulation_time(const koppel_simulation* simulation);
 /* All that a simulation goes on from, as bytes: at most `size` of them, and their number in *needed. NULL bytes only
- * ask for the number. What is loaded goes on bit for bit as what was saved; "cvode" starts again here, in both. The
- * bytes are of this machine's kind. */
+ * ask for the number. What is loaded goes on bit for bit as what was saved; integrators of SUNDIALS start again here, in
+ * both. The bytes are of this machine's kind. */
 KOPPEL_EXPORT koppel_status koppel_simulation_save(koppel_simulation* simulation, void* bytes, size_t size,
                                                    size_t* needed, koppel_error* error);
 /* Goes on from what was saved, with the same scene; advancing to koppel_simulation_time gives the state there.

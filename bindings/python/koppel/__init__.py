@@ -10,10 +10,10 @@ from .linearisation import Eigenmode, Linearisation, Matrix
 from .mechanism import Mechanism
 from .modes import Mode, Modes
 from .run import run
-from .simulation import Simulation, Summary, simulate
+from .simulation import Crossing, Simulation, Summary, simulate
 from .state import Analysis, Freedoms, Reactions, Report, State
 from .stream import Statistics, Stream
 
-__all__ = ["Analysis", "Eigenmode", "Engine", "Equilibrium", "Error", "Finding", "Freedoms", "Linearisation", "Matrix",
-           "Mechanism", "Mode", "Modes", "Reactions", "Report", "Scene", "Simulation", "State", "Statistics", "Stream",
-           "Summary", "load", "run", "simulate"]
+__all__ = ["Analysis", "Crossing", "Eigenmode", "Engine", "Equilibrium", "Error", "Finding", "Freedoms",
+           "Linearisation", "Matrix", "Mechanism", "Mode", "Modes", "Reactions", "Report", "Scene", "Simulation",
+           "State", "Statistics", "Stream", "Summary", "load", "run", "simulate"]

@@ -68,6 +68,7 @@ _ARGUMENTS = {
     "koppel_simulation_create": (_HANDLE, c.POINTER(structs.SimulationOptions), _OUT, _ERROR),
     "koppel_simulation_destroy": (_HANDLE,),
     "koppel_simulation_advance": (_HANDLE, c.c_double, _HANDLE, _ERROR),
+    "koppel_simulation_watch": (_HANDLE, c.c_double, _HANDLE, c.POINTER(structs.Crossing), _ERROR),
     "koppel_simulation_summarise": (_HANDLE, c.POINTER(structs.SimulationSummary)),
     "koppel_equilibrium_find": (_HANDLE, c.POINTER(structs.EquilibriumOptions), _OUT, _ERROR),
     "koppel_equilibrium_destroy": (_HANDLE,),

@@ -36,6 +36,7 @@ class Mechanism(Handle):
         self.inputs = self.names("input", self.sizes.inputs)
         self.records = self.names("record", self.sizes.records)
         self.equations = self.names("equation", self.sizes.equations)
+        self.watches = self.names("watch", self.sizes.watches)
 
     def names(self, kind, count):
         """The first `count` names of a kind ("body", "frame", ... as in structs.KINDS)."""

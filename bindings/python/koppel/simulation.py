@@ -33,6 +33,16 @@ class Summary:
     events: int  # kinks and jumps of forces at which steps were made to end
 
 
+@dataclasses.dataclass(frozen=True)
+class Crossing:
+    """Where a value that the scene watches was crossed."""
+
+    watch: str
+    time: float  # [s] the first at which it lies on the other side, to rounding
+    rising: bool
+    stop: bool  # the scene wants the simulation to end there
+
+
 class Simulation(Handle):
     """A motion from a closed state on: with its rates if it has them, else with those that the scene asks for, as
     nearly as the loops allow. The state itself stays as it is.
@@ -57,6 +67,16 @@ class Simulation(Handle):
         integration goes no further; the state is as before."""
         call("koppel_simulation_advance", self.handle, time, state.handle)
 
+    def watch(self, time, state):
+        """As advance(), but no further than to the first crossing of a value that the scene watches, which is
+        returned; None: there was none before the time. The next call goes on."""
+        crossing = structs.Crossing()
+        call("koppel_simulation_watch", self.handle, time, state.handle, crossing)
+        if crossing.watch == structs.NO_WATCH:
+            return None
+        name = state.mechanism.watches[crossing.watch]
+        return Crossing(name, crossing.time, bool(crossing.rising), bool(crossing.stop))
+
     @property
     def summary(self):
         struct = structs.SimulationSummary()
@@ -67,19 +87,27 @@ class Simulation(Handle):
 def simulate(scene, times=None, tolerance=0.0, step=0.0, integrator=None, formulation=None):
     """Lets a mechanism move from its closed position at time 0 through times [s] (None: as the scene proposes).
 
-    scene: a Mechanism, or the path of a scene file. Returns a dict of arrays, all of the length of times: "time" and
-    every recorded column under its name; and the Summary. Error: from the first step that fails.
+    scene: a Mechanism, or the path of a scene file. Returns a dict of arrays, all of one length: "time" and every
+    recorded column under its name; and the Summary. They end at the first crossing at which the scene wants to stop.
+    Error: from the first step that fails.
     """
     mechanism = scene if isinstance(scene, Mechanism) else load(scene)
     if times is None:
         times = numpy.linspace(0.0, mechanism.duration, mechanism.steps + 1)
     times = numpy.asarray(times, dtype=numpy.float64)
-    table = numpy.empty((times.size, mechanism.sizes.records))
+    rows, shown = [], []
     with State(mechanism) as state:
         state.close()
         end = times[-1] if times.size else 0.0
         with Simulation(state, tolerance, step, end, integrator, formulation) as simulation:
-            for row, time in enumerate(times):
-                simulation.advance(time, state)
-                table[row] = state.records()
-            return dict(zip(mechanism.records, table.T)) | {"time": times}, simulation.summary
+            for time in times:
+                crossing = simulation.watch(time, state)
+                while crossing and not crossing.stop:
+                    crossing = simulation.watch(time, state)
+                rows.append(state.records())
+                shown.append(crossing.time if crossing else time)
+                if crossing:
+                    break
+            summary = simulation.summary
+    table = numpy.array(rows).reshape(-1, mechanism.sizes.records)
+    return dict(zip(mechanism.records, table.T)) | {"time": numpy.array(shown)}, summary

@@ -12,7 +12,8 @@ STATUSES = {
 }
 SEVERITIES = ("note", "warning", "error")
 KINDS = {name: number for number, name in enumerate(
-    ("body", "frame", "joint", "coordinate", "rate", "input", "record", "equation", "scene"), start=1)}
+    ("body", "frame", "joint", "coordinate", "rate", "input", "record", "equation", "scene",
+     "watch"), start=1)}
 Q, V, A = 1, 2, 3
 VERDICTS = ("open", "closed", "not found", "retry", "limit", "unreachable")
 SOLVERS = ("none", "newton", "ceres", "flow")
@@ -50,7 +51,7 @@ class EngineOptions(Sized):
 class Sizes(Sized):
     _fields_ = [(name, c.c_uint32) for name in (
         "struct_size", "bodies", "joints", "frames", "coordinates", "rates", "inputs", "records", "loops",
-        "constraints", "equations", "unknowns")]
+        "constraints", "equations", "unknowns", "watches")]
 
 
 class Settings(Sized):
@@ -114,6 +115,14 @@ class SimulationSummary(Sized):
                 ("energy", c.c_double), ("energy_error", c.c_double), ("energy_size", c.c_double),
                 ("position_drift", c.c_double), ("velocity_drift", c.c_double), ("start_change", c.c_double),
                 ("tolerance", c.c_double), ("step", c.c_double), ("stiff", c.c_int32), ("events", c.c_uint32)]
+
+
+class Crossing(Sized):
+    _fields_ = [("struct_size", c.c_uint32), ("watch", c.c_uint32), ("time", c.c_double), ("rising", c.c_int32),
+                ("stop", c.c_int32)]
+
+
+NO_WATCH = 0xFFFFFFFF
 
 
 class EquilibriumOptions(Sized):

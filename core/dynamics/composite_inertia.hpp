@@ -26,6 +26,7 @@ struct PlainWrench {
     moment -= o.moment, force -= o.force;
     return *this;
   }
+  PlainWrench operator+(const PlainWrench& o) const { return {moment + o.moment, force + o.force}; }
   friend PlainWrench operator*(double f, const PlainWrench& w) { return {f * w.moment, f * w.force}; }
   /// With its moment about a point from which this one's lies at `arm`.
   PlainWrench moved(const Plain3& arm) const { return {moment + arm.cross(force), force}; }

@@ -130,6 +130,26 @@ void TreeFactors::solve(double* x) const {
   inwards_out(x);
 }
 
+void TreeFactors::solve(double* x, std::uint32_t count) const {
+  const TreeLayout& layout = matrix_.layout();
+  const auto row_of = [&](std::uint32_t p) { return x + std::size_t{count} * layout.rate(p); };
+  for (std::uint32_t p = layout.rates(); p-- > 0;) {
+    const double* const row = matrix_.row(p);
+    for_each_ancestor(layout, p, [&](std::uint32_t ancestor, std::uint32_t depth) {
+      subtract(row[depth], row_of(p), row_of(ancestor), count);
+    });
+  }
+  for (std::uint32_t p = 0; p < layout.rates(); ++p) {
+    const double* const row = matrix_.row(p);
+    double* const own = row_of(p);
+    const double inverse = 1.0 / pivot(p);
+    for (std::uint32_t k = 0; k < count; ++k) own[k] *= inverse;
+    for_each_ancestor(layout, p, [&](std::uint32_t ancestor, std::uint32_t depth) {
+      subtract(row[depth], row_of(ancestor), own, count);
+    });
+  }
+}
+
 void TreeFactors::half_solve(double* x) const {
   outwards_in(x);
   for (std::uint32_t p = 0; p < matrix_.layout().rates(); ++p) x[matrix_.layout().rate(p)] /= std::sqrt(pivot(p));

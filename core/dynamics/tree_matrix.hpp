@@ -68,6 +68,8 @@ class TreeFactors {
   void half_solve(double* x) const;
   /// x = L^-1 D^-1/2 x: solve() is half_solve() and this.
   void other_half_solve(double* x) const;
+  /// X = M^-1 X, nv rows of `count` numbers each, row by row.
+  void solve(double* x, std::uint32_t count) const;
   /// Column by column.
   void solve(Eigen::Ref<Eigen::MatrixXd> columns) const;
   /// The logarithm of the determinant.

@@ -111,6 +111,13 @@ class Joint {
   /// (dS/dt) v: what the relative acceleration has beyond S a.
   bool bias(const double* joint_q, const double* joint_v, Vector6& bias) const;
 
+  /// dS(q; u, w): the derivative of S w along the rates u. Of joints with callbacks only, as the next.
+  bool subspace_rate(const double* joint_q, const double* u, const double* w, Vector6& rate) const {
+    return callback_bias(joint_q, u, w, rate);
+  }
+  /// How the bias at the rates joint_v changes along each rate (columns); by central differences.
+  bool bias_by_q(const double* joint_q, const double* joint_v, Subspace& slopes) const;
+
   /// Plugin-given implicit face: residual and derivative (6 columns) of a relative pose. Only if type->rows is not
   /// empty.
   bool plugin_residual(const Pose& pose, double* residual, double* jacobian) const;

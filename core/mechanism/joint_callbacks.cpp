@@ -90,6 +90,15 @@ bool Joint::callback_bias(const double* joint_q, const double* u, const double* 
   return type->calls.bias(1, &instance, q_shifted.data(), u, w, result.data()) >= 0 && all_finite(result.data(), 6);
 }
 
+bool Joint::bias_by_q(const double* joint_q, const double* joint_v, Subspace& slopes) const {
+  const auto bias_at = [&](const double* delta, Vector6& out) {
+    JointVector moved;
+    integrate(joint_q, delta, moved.data());
+    return callback_bias(moved.data(), joint_v, joint_v, out);
+  };
+  return differentiate_along_rates(*this, line_step_, bias_at, slopes);
+}
+
 bool Joint::plugin_residual(const Pose& relative, double* residual, double* jacobian) const {
   const std::array<double, 12> in = pose_array(relative);
   const std::size_t rows = type->rows.size();

@@ -2,6 +2,7 @@
 // origin, every body with every rate before it. What core computes in other ways must agree.
 #pragma once
 
+#include <array>
 #include <stdexcept>
 #include <vector>
 
@@ -9,12 +10,30 @@
 #include <Eigen/Core>
 
 #include "dynamics/inertias.hpp"
+#include "mechanism/coordinates.hpp"
 #include "mechanism/mechanism.hpp"
+#include "spatial/dual.hpp"
 #include "spatial/quaternion.hpp"
 #include "spatial/rotation.hpp"
 #include "spatial/spatial_inertia.hpp"
 
 namespace koppel::test {
+
+/// q displaced along a rate by an infinitesimal.
+inline Eigen::Matrix<Dual<long double>, Eigen::Dynamic, 1> displaced(const Mechanism& mechanism,
+                                                                     const Eigen::VectorXd& q, std::uint32_t rate) {
+  Eigen::Matrix<Dual<long double>, Eigen::Dynamic, 1> result = q.cast<Dual<long double>>();
+  for (const StateBlock& block : mechanism.blocks) {
+    const auto rates = static_cast<std::uint32_t>(rate_count(block.kind));
+    if (rate < block.v || rate >= block.v + rates) continue;
+    std::array<double, 12> tangent{};
+    tangent_block(block.kind, q.data() + block.q, tangent.data());
+    for (std::uint32_t i = 0; i < coordinate_count(block.kind); ++i) {
+      result[block.q + i].dual = static_cast<long double>(tangent[i * rates + rate - block.v]);
+    }
+  }
+  return result;
+}
 
 /// Only joints that are products of motions.
 template <typename T>
@@ -32,8 +51,10 @@ class SpatialReference {
   }
 
   /// Efforts for rates v and accelerations a.
-  Vector efforts(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& a, const Vector3& gravity) {
-    move(q.cast<T>(), v.cast<T>(), a.cast<T>(), gravity.cast<T>());
+  template <typename Q, typename V>
+  Vector efforts(const Eigen::MatrixBase<Q>& q, const Eigen::MatrixBase<V>& v, const Eigen::VectorXd& a,
+                 const Vector3& gravity) {
+    move(q.template cast<T>(), v.template cast<T>(), a.cast<T>(), gravity.cast<T>());
     Vector result = Vector::Zero(mechanism_.nv);
     for (std::size_t i = mechanism_.steps.size(); i-- > 0;) {
       const TreeStep& step = mechanism_.steps[i];

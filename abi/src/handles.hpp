@@ -11,6 +11,7 @@
 #include "dynamics/linearisation.hpp"
 #include "dynamics/reactions.hpp"
 #include "dynamics/simulation.hpp"
+#include "dynamics/tree_dynamics.hpp"
 #include "koppel/koppel.h"
 #include "mechanism/mechanism.hpp"
 #include "mechanism/state.hpp"
@@ -73,6 +74,11 @@ struct koppel_linearisation {
   std::shared_ptr<koppel::Registry> registry;
   std::shared_ptr<const koppel::Mechanism> mechanism;
   koppel::Linearisation linearisation;
+};
+
+struct koppel_tree {
+  std::shared_ptr<koppel::Registry> registry;
+  std::unique_ptr<koppel::TreeDynamics> dynamics;
 };
 
 struct koppel_stream {

@@ -25,6 +25,7 @@ using Work = std::unique_ptr<koppel_work, Destroy<koppel_work_destroy>>;
 using Simulation = std::unique_ptr<koppel_simulation, Destroy<koppel_simulation_destroy>>;
 using Equilibrium = std::unique_ptr<koppel_equilibrium, Destroy<koppel_equilibrium_destroy>>;
 using Linearisation = std::unique_ptr<koppel_linearisation, Destroy<koppel_linearisation_destroy>>;
+using Tree = std::unique_ptr<koppel_tree, Destroy<koppel_tree_destroy>>;
 using Modes = std::unique_ptr<koppel_modes, Destroy<koppel_modes_destroy>>;
 
 struct CloseStream {

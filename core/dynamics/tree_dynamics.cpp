@@ -23,7 +23,8 @@ TreeDynamics::TreeDynamics(std::shared_ptr<const Mechanism> mechanism, Inertias 
       dense_(Eigen::MatrixXd::Zero(mechanism_->nv, mechanism_->nv)),
       by_q_(dense_),
       by_v_(dense_),
-      by_effort_(dense_) {}
+      by_effort_(dense_),
+      solved_(mechanism_->nv, 3 * mechanism_->nv) {}
 
 bool TreeDynamics::place(const double* q) {
   std::copy(q, q + mechanism_->nq, q_.data());
@@ -90,11 +91,15 @@ TreeDynamics::Obstacle TreeDynamics::forward_derivatives(const double* q, const 
                              by_v_)) {
     return plugin_error(derivatives_.culprit());
   }
-  by_q_ = -by_q_;
-  by_v_ = -by_v_;
-  by_effort_.setZero();
-  for (std::uint32_t p = 0; p < layout_.rates(); ++p) by_effort_(layout_.rate(p), layout_.rate(p)) = 1.0;
-  for (RowMatrix* part : {&by_q_, &by_v_, &by_effort_}) factored_.factors().solve(part->data(), mechanism_->nv);
+  const Eigen::Index n = mechanism_->nv;
+  solved_.leftCols(n) = -by_q_;
+  solved_.middleCols(n, n) = -by_v_;
+  solved_.rightCols(n).setZero();
+  for (std::uint32_t p = 0; p < layout_.rates(); ++p) solved_(layout_.rate(p), 2 * n + layout_.rate(p)) = 1.0;
+  factored_.factors().solve(solved_.data(), 3 * mechanism_->nv);
+  by_q_ = solved_.leftCols(n);
+  by_v_ = solved_.middleCols(n, n);
+  by_effort_ = solved_.rightCols(n);
   return std::nullopt;
 }
 

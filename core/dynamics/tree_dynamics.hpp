@@ -67,7 +67,7 @@ class TreeDynamics {
   TreeDerivatives derivatives_;
   Eigen::VectorXd q_, rest_, efforts_, accelerations_;
   Eigen::MatrixXd dense_;
-  RowMatrix by_q_, by_v_, by_effort_;
+  RowMatrix by_q_, by_v_, by_effort_, solved_;
   MechanicalState mechanical_;
 };
 

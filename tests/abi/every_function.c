@@ -459,6 +459,48 @@ static void rests_and_linearises(koppel_engine* engine) {
   koppel_scene_destroy(scene);
 }
 
+/* The same weight once more, as a tree: what holds it, how it falls, what it has. Two states: at the side, and below.
+ */
+static void knows_the_dynamics_of_trees(koppel_engine* engine) {
+  static const char text[] =
+      "schema = 1\n[scene]\ngravity = [0, -9.81, 0]\n[[body]]\nname = 'weight'\ntype = 'point_mass'\n"
+      "mass = 2\nat = [0, -1, 0]\n[[joint]]\nname = 'pin'\ntype = 'revolute'\ninlet = 'ground'\noutlet = 'weight'\n";
+  koppel_scene* scene = NULL;
+  koppel_mechanism* mechanism = NULL;
+  koppel_tree* tree = NULL;
+  SIZED(koppel_error, error);
+  const double right = acos(0.0), q[] = {right, 0.0}, v[] = {3.0, 3.0};
+  double efforts[2], a[2], mass[2], kinetic[2], potential[2], centre[6], momentum[6], spin[6], by_q[2], by_v[2],
+      by_f[2];
+  CHECK_OK(koppel_scene_from_text(engine, text, sizeof text - 1, NULL, NULL, &scene, &error));
+  CHECK_OK(koppel_mechanism_compile(scene, NULL, &mechanism, &error));
+  CHECK_OK(koppel_tree_create(mechanism, &tree, &error));
+  CHECK_OK(koppel_tree_inverse_dynamics(tree, 2, q, v, NULL, efforts, &error));
+  CHECK_NEAR(efforts[0], 2.0 * 9.81, 1e-14);
+  CHECK_NEAR(efforts[1], 0.0, 1e-14);
+  CHECK_OK(koppel_tree_forward_dynamics(tree, 2, q, v, NULL, a, &error));
+  CHECK_NEAR(a[0], -9.81, 1e-14);
+  CHECK_OK(koppel_tree_mass_matrix(tree, 2, q, mass, &error));
+  CHECK_NEAR(mass[0], 2.0, 1e-14);
+  CHECK_OK(koppel_tree_energy(tree, 2, q, v, kinetic, potential, &error));
+  CHECK_NEAR(kinetic[1], 9.0, 1e-14);
+  CHECK_NEAR(potential[1], -2.0 * 9.81, 1e-14);
+  CHECK_OK(koppel_tree_momentum(tree, 2, q, v, mass, centre, momentum, spin, &error));
+  CHECK(mass[1] == 2.0);
+  CHECK_NEAR(centre[0], 1.0, 1e-14);
+  CHECK_NEAR(momentum[1], 6.0, 1e-14);
+  CHECK_NEAR(spin[2], 0.0, 1e-14);
+  CHECK_OK(koppel_tree_inverse_dynamics_derivatives(tree, 2, q, v, NULL, by_q, by_v, &error));
+  CHECK_NEAR(by_q[1], 2.0 * 9.81, 1e-14);
+  CHECK_NEAR(by_v[1], 0.0, 1e-14);
+  CHECK_OK(koppel_tree_forward_dynamics_derivatives(tree, 2, q, v, NULL, by_q, by_v, by_f, &error));
+  CHECK_NEAR(by_q[1], -9.81, 1e-14);
+  CHECK_NEAR(by_f[0], 0.5, 1e-14);
+  koppel_tree_destroy(tree);
+  koppel_mechanism_destroy(mechanism);
+  koppel_scene_destroy(scene);
+}
+
 static void uses_a_suspension(koppel_engine* engine, const char* file, const char* url) {
   koppel_scene* scene = NULL;
   koppel_mechanism* mechanism = NULL;
@@ -505,6 +547,7 @@ int main(int count, char** arguments) {
   drives_by_its_own_function(engine);
   simulates_a_pendulum(engine);
   rests_and_linearises(engine);
+  knows_the_dynamics_of_trees(engine);
   uses_a_suspension(engine, arguments[1], arguments[3]);
   koppel_engine_destroy(engine);
   printf("%d checks, %d failures\n", checks, failures);

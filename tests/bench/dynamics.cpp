@@ -10,6 +10,8 @@
 #include "dynamics/forward_dynamics.hpp"
 #include "dynamics/inverse_dynamics.hpp"
 #include "dynamics/mass_matrix.hpp"
+#include "dynamics/tree_derivatives.hpp"
+#include "dynamics/tree_dynamics.hpp"
 #include "trees.hpp"
 
 namespace koppel::bench {
@@ -31,7 +33,11 @@ struct Bench {
         matrix(layout),
         mass_matrix(layout, tree.inertias),
         articulated(layout, tree.inertias),
-        factored(layout, tree.inertias) {}
+        factored(layout, tree.inertias),
+        derivatives(layout, tree.inertias),
+        by_q(RowMatrix::Zero(mechanism.nv, mechanism.nv)),
+        by_v(by_q),
+        dynamics(of.mechanism, of.inertias) {}
 
   void position(const TreeState& state) { fine &= forward_position(mechanism, state.q.data(), kinematics); }
   void motion(const TreeState& state, const Eigen::VectorXd& a) {
@@ -54,6 +60,40 @@ struct Bench {
     motion(state, rest);
     fine &= factored.evaluate(kinematics, mechanism.gravity, {}, state.efforts, result);
   }
+  void efforts_by(const TreeState& state) {
+    position(state);
+    fine &=
+        derivatives.evaluate(kinematics, mechanism.gravity, state.q.data(), state.v.data(), state.a.data(), by_q, by_v);
+  }
+  /// What the same takes by central differences of the efforts; good for some ten digits.
+  void efforts_by_differences(const TreeState& state) {
+    constexpr double step = 6e-6;  // the cube root of rounding
+    TreeState ahead = state, behind = state;
+    for (std::uint32_t j = 0; j < mechanism.nv; ++j) {
+      rest[j] = step;
+      integrate(mechanism, state.q, rest, ahead.q);
+      integrate(mechanism, state.q, -rest, behind.q);
+      rest[j] = 0.0;
+      difference(ahead, behind, step, by_q.col(j));
+    }
+    ahead.q = behind.q = state.q;
+    for (std::uint32_t j = 0; j < mechanism.nv; ++j) {
+      ahead.v[j] = state.v[j] + step;
+      behind.v[j] = state.v[j] - step;
+      difference(ahead, behind, step, by_v.col(j));
+      ahead.v[j] = behind.v[j] = state.v[j];
+    }
+  }
+  void difference(const TreeState& ahead, const TreeState& behind, double step,
+                  Eigen::Ref<Eigen::VectorXd, 0, Eigen::InnerStride<>> column) {
+    efforts(ahead);
+    column = result;
+    efforts(behind);
+    column = (column - result) / (2 * step);
+  }
+  void accelerations_by(const TreeState& state) {
+    fine &= !dynamics.forward_derivatives(state.q.data(), state.v.data(), state.efforts.data());
+  }
   void energy(const TreeState& state) {
     motion(state, rest);
     result[0] = mechanical_state(tree.inertias, kinematics, mechanism.gravity).kinetic;
@@ -69,6 +109,9 @@ struct Bench {
   MassMatrix mass_matrix;
   ArticulatedBodies articulated;
   FactoredDynamics factored;
+  TreeDerivatives derivatives;
+  RowMatrix by_q, by_v;
+  TreeDynamics dynamics;
   bool fine = true;
 };
 
@@ -89,6 +132,24 @@ double mass_error(Bench& bench, const TreeState& state) {
   Eigen::MatrixXd found;
   bench.matrix.dense(found);
   return static_cast<double>((found.cast<long double>() - exact).norm() / exact.norm());
+}
+/// Of both derivatives; dual numbers carry the exact ones.
+double derivatives_error(Bench& bench, const TreeState& state) {
+  using Number = Dual<long double>;
+  test::SpatialReference<Number> reference(bench.mechanism, bench.tree.inertias);
+  const Vector3& gravity = bench.mechanism.gravity;
+  long double off = 0.0L, size = 0.0L;
+  for (std::uint32_t j = 0; j < bench.mechanism.nv; ++j) {
+    const auto by_q = reference.efforts(test::displaced(bench.mechanism, state.q, j), state.v, state.a, gravity);
+    Eigen::Matrix<Number, Eigen::Dynamic, 1> faster = state.v.cast<Number>();
+    faster[j].dual = 1;
+    const auto by_v = reference.efforts(state.q, faster, state.a, gravity);
+    for (std::uint32_t k = 0; k < bench.mechanism.nv; ++k) {
+      off += std::pow(by_q[k].dual - bench.by_q(k, j), 2) + std::pow(by_v[k].dual - bench.by_v(k, j), 2);
+      size += std::pow(by_q[k].dual, 2) + std::pow(by_v[k].dual, 2);
+    }
+  }
+  return static_cast<double>(std::sqrt(off / size));
 }
 double accelerations_error(Bench& bench, const TreeState& state) {
   Reference reference(bench.mechanism, bench.tree.inertias);
@@ -117,6 +178,9 @@ constexpr Row rows[] = {
     {"mass_matrix", [](Bench& b, const TreeState& s) { b.mass(s); }, mass_error},
     {"articulated_bodies", [](Bench& b, const TreeState& s) { b.by_bodies(s); }, accelerations_error},
     {"factored_mass", [](Bench& b, const TreeState& s) { b.by_factors(s); }, accelerations_error},
+    {"derivatives", [](Bench& b, const TreeState& s) { b.efforts_by(s); }, derivatives_error},
+    {"forward_derivatives", [](Bench& b, const TreeState& s) { b.accelerations_by(s); }, no_error},
+    {"differences", [](Bench& b, const TreeState& s) { b.efforts_by_differences(s); }, derivatives_error},
     {"energy", [](Bench& b, const TreeState& s) { b.energy(s); }, energy_error},
 };
 

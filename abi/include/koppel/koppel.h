@@ -662,6 +662,58 @@ KOPPEL_EXPORT koppel_status koppel_reactions(const koppel_state* state, koppel_w
 /* The recorded columns, `records` numbers. */
 KOPPEL_EXPORT koppel_status koppel_records(const koppel_state* state, koppel_work* work, double* values, size_t count);
 
+/* ------------------------------------------------------------------------------------------------ trees */
+
+typedef struct koppel_tree koppel_tree; /* dynamics of a spanning tree, with its scratch memory: one for each thread */
+
+/* Of the bodies on the joints of the spanning tree, under gravity. Loops are open where they are cut; constraints,
+ * [[force]]s and drives do not act, and driven rates are rates as all others. What belongs to cut joints does not
+ * count, and comes out zero. PLUGIN, INVALID_SCENE: a body has no sound inertia. */
+KOPPEL_EXPORT koppel_status koppel_tree_create(const koppel_mechanism* mechanism, koppel_tree** tree,
+                                               koppel_error* error);
+KOPPEL_EXPORT void koppel_tree_destroy(koppel_tree* tree);
+
+/* The functions below take `count` states, one after another, and give for each what it gives alone, bit for bit. q:
+ * `coordinates` numbers for each state; quaternions and unit vectors are normalised. v, a, efforts [N m, N]: `rates`
+ * numbers; as input NULL for zero. Matrices: `rates` x `rates`, row by row. Outputs must not overlap inputs; of several
+ * each may be NULL: not asked. Nothing is allocated.
+ * INVALID_ARGUMENT: an array is missing, or a number is not finite. PLUGIN: a joint's plugin failed; SINGULAR, of
+ * forward dynamics: something moves without mass. The error tells which state of the batch, from 0; results of the
+ * states before it are written then, no others. */
+
+/* Efforts that a motion takes, by the recursive Newton-Euler algorithm: mass a + bias. With a NULL they are the bias,
+ * with v NULL too the load of gravity. */
+KOPPEL_EXPORT koppel_status koppel_tree_inverse_dynamics(koppel_tree* tree, size_t count, const double* q,
+                                                         const double* v, const double* a, double* efforts,
+                                                         koppel_error* error);
+/* Accelerations that efforts cause, by articulated bodies. */
+KOPPEL_EXPORT koppel_status koppel_tree_forward_dynamics(koppel_tree* tree, size_t count, const double* q,
+                                                         const double* v, const double* efforts, double* a,
+                                                         koppel_error* error);
+/* The mass matrix, by composite rigid bodies: symmetric; v mass v / 2 is the kinetic energy. */
+KOPPEL_EXPORT koppel_status koppel_tree_mass_matrix(koppel_tree* tree, size_t count, const double* q, double* mass,
+                                                    koppel_error* error);
+/* [J], one number for each state; the potential energy is that of gravity, zero with all mass at the world's origin. */
+KOPPEL_EXPORT koppel_status koppel_tree_energy(koppel_tree* tree, size_t count, const double* q, const double* v,
+                                               double* kinetic, double* potential, koppel_error* error);
+/* For each state mass [kg], and in world axes 3 numbers each: centre of mass [m], momentum [N s], angular momentum
+ * about the centre of mass [N m s]. */
+KOPPEL_EXPORT koppel_status koppel_tree_momentum(koppel_tree* tree, size_t count, const double* q, const double* v,
+                                                 double* mass, double* centre, double* momentum,
+                                                 double* angular_momentum, koppel_error* error);
+/* Efforts (rows) by displacements along the rates and by the rates (columns); by accelerations it is the mass matrix. A
+ * displacement moves q along a rate as plugin.h describes rates, and leaves the numbers in v and a as they are. Exact
+ * to rounding; of joints that are no product of motions, what their plugin leaves out, and how their bias changes with
+ * q, is formed by differences within the joint (Carpentier, Mansard 2018; Singh, Russo, Wensing 2022). */
+KOPPEL_EXPORT koppel_status koppel_tree_inverse_dynamics_derivatives(koppel_tree* tree, size_t count, const double* q,
+                                                                     const double* v, const double* a, double* by_q,
+                                                                     double* by_v, koppel_error* error);
+/* Accelerations (rows) by displacements, rates and efforts (columns); by_effort is the inverse of the mass matrix. */
+KOPPEL_EXPORT koppel_status koppel_tree_forward_dynamics_derivatives(koppel_tree* tree, size_t count, const double* q,
+                                                                     const double* v, const double* efforts,
+                                                                     double* by_q, double* by_v, double* by_effort,
+                                                                     koppel_error* error);
+
 /* ------------------------------------------------------------------------------------------------ stream */
 
 typedef struct koppel_stream_options {

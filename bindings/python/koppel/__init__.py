@@ -13,7 +13,8 @@ from .run import run
 from .simulation import Crossing, Simulation, Summary, simulate
 from .state import Analysis, Freedoms, Reactions, Report, State
 from .stream import Statistics, Stream
+from .tree import Momentum, Tree
 
 __all__ = ["Analysis", "Crossing", "Eigenmode", "Engine", "Equilibrium", "Error", "Finding", "Freedoms",
-           "Linearisation", "Matrix", "Mechanism", "Mode", "Modes", "Reactions", "Report", "Scene", "Simulation",
-           "State", "Statistics", "Stream", "Summary", "load", "run", "simulate"]
+           "Linearisation", "Matrix", "Mechanism", "Mode", "Modes", "Momentum", "Reactions", "Report", "Scene",
+           "Simulation", "State", "Statistics", "Stream", "Summary", "Tree", "load", "run", "simulate"]

@@ -84,6 +84,15 @@ _ARGUMENTS = {
     "koppel_linearisation_name": (_HANDLE, c.c_int32, c.c_size_t, *_TEXT),
     "koppel_linearisation_matrix": (_HANDLE, c.c_int32, _NUMBERS, _NUMBERS, c.c_size_t),
     "koppel_linearisation_mode": (_HANDLE, c.c_size_t, c.POINTER(structs.Eigenmode), _NUMBERS, _NUMBERS, c.c_size_t),
+    "koppel_tree_create": (_HANDLE, _OUT, _ERROR),
+    "koppel_tree_destroy": (_HANDLE,),
+    "koppel_tree_inverse_dynamics": (_HANDLE, c.c_size_t, *[_NUMBERS] * 4, _ERROR),
+    "koppel_tree_forward_dynamics": (_HANDLE, c.c_size_t, *[_NUMBERS] * 4, _ERROR),
+    "koppel_tree_mass_matrix": (_HANDLE, c.c_size_t, *[_NUMBERS] * 2, _ERROR),
+    "koppel_tree_energy": (_HANDLE, c.c_size_t, *[_NUMBERS] * 4, _ERROR),
+    "koppel_tree_momentum": (_HANDLE, c.c_size_t, *[_NUMBERS] * 6, _ERROR),
+    "koppel_tree_inverse_dynamics_derivatives": (_HANDLE, c.c_size_t, *[_NUMBERS] * 5, _ERROR),
+    "koppel_tree_forward_dynamics_derivatives": (_HANDLE, c.c_size_t, *[_NUMBERS] * 6, _ERROR),
     "koppel_poses": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
     "koppel_twists": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
     "koppel_frame_accelerations": (_HANDLE, _HANDLE, c.c_int32, _NUMBERS, c.c_size_t),
@@ -100,7 +109,7 @@ _RESULTS = {
     "koppel_engine_destroy": None, "koppel_diagnostics_destroy": None, "koppel_scene_destroy": None,
     "koppel_mechanism_destroy": None, "koppel_state_destroy": None, "koppel_work_destroy": None,
     "koppel_modes_destroy": None, "koppel_simulation_destroy": None, "koppel_equilibrium_destroy": None,
-    "koppel_linearisation_destroy": None,
+    "koppel_linearisation_destroy": None, "koppel_tree_destroy": None,
 }
 
 

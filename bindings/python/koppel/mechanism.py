@@ -5,6 +5,7 @@ import ctypes as c
 from . import structs
 from .library import Handle, call, call_plain, text
 from .state import State
+from .tree import Tree
 
 
 class Mechanism(Handle):
@@ -64,3 +65,7 @@ class Mechanism(Handle):
     def state(self):
         """A new State at time 0, not closed yet."""
         return State(self)
+
+    def tree(self):
+        """A new Tree: the dynamics of the spanning tree, of many states at once."""
+        return Tree(self)

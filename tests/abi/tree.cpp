@@ -72,7 +72,7 @@ class Trees : public ::testing::Test {
   }
 
   static constexpr std::size_t count = 5;
-  Host host{"dynamics/double_pendulum"};
+  Host host{KOPPEL_SCENES "/dynamics/double_pendulum.toml"};
   Tree tree = make_tree(host.mechanism);
   const std::size_t nq = host.sizes.coordinates, nv = host.sizes.rates;
   std::vector<double> q, v, a;
@@ -197,7 +197,7 @@ TEST(Tree, NamesWhatMovesWithoutMass) {
 }
 
 TEST(Tree, OfALoopIsOpenWhereItIsCut) {
-  const Host host("dynamics/fourbar_free");
+  const Host host(KOPPEL_SCENES "/dynamics/fourbar_free.toml");
   const Tree tree = make_tree(host.mechanism);
   const std::size_t nv = host.sizes.rates;
   auto cut = sized<koppel_closure>();
@@ -221,7 +221,7 @@ TEST(Tree, OfALoopIsOpenWhereItIsCut) {
 TEST(Tree, OutlivesItsMechanism) {
   Tree tree;
   {
-    const Host host("dynamics/double_pendulum");
+    const Host host(KOPPEL_SCENES "/dynamics/double_pendulum.toml");
     tree = make_tree(host.mechanism);
   }
   const std::vector<double> q(2, 0.3);

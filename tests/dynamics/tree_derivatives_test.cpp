@@ -32,12 +32,14 @@ std::string between_others(const JointCase& kind, bool reversed) {
 }
 
 bool is_product(const JointCase& kind) {
-  return kind.name != "pointing" && kind.name != "varying_screw" && kind.name != "bare_screw";
+  return kind.name != "pointing" && kind.name != "cam" && kind.name != "varying_screw" && kind.name != "bare_screw";
 }
 
 std::vector<Kind> joints(bool products) {
   std::vector<Kind> result;
-  for (const JointCase& kind : all_joints()) {
+  std::vector<JointCase> kinds = all_joints();
+  kinds.push_back({"cam", "type = 'odd.cam'", 1e-10});
+  for (const JointCase& kind : kinds) {
     if (is_product(kind) != products) continue;
     result.push_back({kind.name, between_others(kind, false)});
     result.push_back({kind.name + "_reversed", between_others(kind, true)});
@@ -109,7 +111,7 @@ class DerivativesOf : public testing::TestWithParam<Kind>, public MovingTree {
 
   bool has(const char* type) const { return GetParam().text.find(type) != std::string::npos; }
   /// How often the bias of a joint is a difference of differences.
-  int layers() const { return has("bare_screw") || has("pointing") ? 2 : 0; }
+  int layers() const { return has("bare_screw") || has("pointing") || has("odd.cam") ? 2 : 0; }
   bool has_callbacks() const { return layers() > 0 || has("varying_screw"); }
 };
 

@@ -48,6 +48,22 @@ inline koppel_status pointing_pose(size_t count, const void* const*, const doubl
   return KOPPEL_OK;
 }
 
+/// A turn that carries a curve along, both bent by a shift: S and its bias change with all coordinates.
+inline koppel_status cam_pose(size_t count, const void* const*, const double* q, double* pose) {
+  for (size_t i = 0; i < count; ++i, q += 2, pose += 12) {
+    const double angle = q[0], shift = q[1], tilt = 0.5 * angle * shift;
+    const double c = std::cos(angle), s = std::sin(angle), a = std::cos(tilt), b = std::sin(tilt);
+    const double values[12] = {c,     -s * a,
+                               s * b, s,
+                               c * a, -c * b,
+                               0,     b,
+                               a,     0.1 * std::sin(2 * angle),
+                               shift, 0.1 * (1 - c) + 0.2 * angle * shift};
+    for (int k = 0; k < 12; ++k) pose[k] = values[k];
+  }
+  return KOPPEL_OK;
+}
+
 constexpr koppel_type type(const char* name) {
   koppel_type out{};
   out.struct_size = sizeof(koppel_type);
@@ -57,7 +73,8 @@ constexpr koppel_type type(const char* name) {
 }
 constexpr koppel_type parallel_type = type("odd.parallel"), beside_type = type("odd.beside"),
                       slide_type = type("odd.slide"), along_type = type("odd.along"),
-                      oblique_type = type("odd.oblique"), pointing_type = type("odd.pointing");
+                      oblique_type = type("odd.oblique"), pointing_type = type("odd.pointing"),
+                      cam_type = type("odd.cam");
 
 constexpr koppel_joint_type product(const koppel_type& of, const koppel_coordinate* coordinates,
                                     koppel_status (*motions)(const void*, koppel_motion*)) {
@@ -69,19 +86,22 @@ constexpr koppel_joint_type product(const koppel_type& of, const koppel_coordina
   out.motions = motions;
   return out;
 }
-constexpr koppel_joint_type pointing_joint() {
+using PoseFunction = koppel_status(size_t count, const void* const* instances, const double* q, double* pose);
+constexpr koppel_joint_type by_pose(const koppel_type& of, const koppel_coordinate* coordinates, size_t count,
+                                    PoseFunction* pose) {
   koppel_joint_type out{};
   out.struct_size = sizeof(koppel_joint_type);
-  out.type = &pointing_type;
-  out.coordinates = direction;
-  out.coordinate_count = 1;
-  out.pose = pointing_pose;
+  out.type = &of;
+  out.coordinates = coordinates;
+  out.coordinate_count = count;
+  out.pose = pose;
   return out;
 }
 constexpr koppel_joint_type joints[] = {
     product(parallel_type, two_angles, motions<0>),  product(beside_type, angle_and_line, motions<1>),
     product(slide_type, angle_and_line, motions<2>), product(along_type, angle_and_line, motions<3>),
-    product(oblique_type, two_lines, motions<4>),    pointing_joint()};
+    product(oblique_type, two_lines, motions<4>),    by_pose(pointing_type, direction, 1, pointing_pose),
+    by_pose(cam_type, angle_and_line, 2, cam_pose)};
 
 inline const void* type_table(const char* interface_id, size_t index) {
   return std::string_view(interface_id) == KOPPEL_JOINT_INTERFACE && index < std::size(joints) ? &joints[index]

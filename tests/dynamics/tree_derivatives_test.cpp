@@ -104,7 +104,7 @@ class DerivativesOf : public testing::TestWithParam<Kind>, public MovingTree {
   Eigen::VectorXd row_rounding() {
     const Eigen::VectorXd kept = v;
     v.setOnes();
-    const Eigen::VectorXd result = 4.0 * rounding(a);
+    Eigen::VectorXd result = 4.0 * rounding(a);
     v = kept;
     return result;
   }
@@ -234,6 +234,31 @@ TEST(Chains, AtRestHaveASymmetricStiffnessOfGravity) {
     for (Eigen::Index i = 0; i < by_q.rows(); ++i) {
       for (Eigen::Index j = 0; j < i; ++j) EXPECT_NEAR(by_q(i, j), by_q(j, i), std::max(tolerance[i], tolerance[j]));
     }
+  }
+}
+
+// Rounding of positions grows with their distance, and with it that of arms; but no moment is taken about a far point.
+TEST(Chains, FarAwayHaveTheSameDerivatives) {
+  constexpr Eigen::Index n = 7;
+  constexpr double distance = 1e6;
+  const std::string text = chain_text(n, n);
+  std::string moved = replaced(text, "on = 'ground'", "on = 'far'");
+  moved +=
+      "[[body]]\nname = 'far'\n[[joint]]\nname = 'away'\ntype = 'weld'\noutlet = 'far'\n"
+      "inlet = { on = 'ground', at = [1e6, 0, 0] }\n";
+  MovingTree near(text, 7);
+  const Built built(moved);
+  Inertias inertias = near.inertias;
+  inertias.of_node.emplace_back();
+  inertias.has_mass.push_back(false);
+  TreeDynamics here(near.built.mechanism, near.inertias), there(built.mechanism, inertias);
+  ASSERT_FALSE(here.inverse_derivatives(near.q.data(), near.v.data(), near.a.data()));
+  ASSERT_FALSE(there.inverse_derivatives(near.q.data(), near.v.data(), near.a.data()));
+  near.v.setOnes();  // for the size of rounding
+  const Eigen::VectorXd tolerance = 4 * distance * near.rounding(near.a);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    EXPECT_LE((here.by_q() - there.by_q()).row(k).lpNorm<Eigen::Infinity>(), tolerance[k]) << k;
+    EXPECT_LE((here.by_v() - there.by_v()).row(k).lpNorm<Eigen::Infinity>(), tolerance[k]) << k;
   }
 }
 

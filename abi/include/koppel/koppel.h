@@ -676,7 +676,7 @@ KOPPEL_EXPORT void koppel_tree_destroy(koppel_tree* tree);
 /* The functions below take `count` states, one after another, and give for each what it gives alone, bit for bit. q:
  * `coordinates` numbers for each state; quaternions and unit vectors are normalised. v, a, efforts [N m, N]: `rates`
  * numbers; as input NULL for zero. Matrices: `rates` x `rates`, row by row. Outputs must not overlap inputs; of several
- * each may be NULL: not asked. Nothing is allocated.
+ * each may be NULL: not asked. Nothing is allocated but for errors.
  * INVALID_ARGUMENT: an array is missing, or a number is not finite. PLUGIN: a joint's plugin failed; SINGULAR, of
  * forward dynamics: something moves without mass. The error tells which state of the batch, from 0; results of the
  * states before it are written then, no others. */

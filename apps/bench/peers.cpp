@@ -17,7 +17,7 @@ struct Known {
   const char* name;
   const char* package;
 };
-constexpr Known known[] = {{"simbody", "libsimbody-dev"}, {"mujoco", "libmujoco-dev"}};
+constexpr Known known[] = {{"simbody", "libsimbody-dev"}, {"mujoco", "libmujoco-dev"}, {"dart", "libdart-dev"}};
 
 /// No figure of an engine counts unless one of its ends is at least as near as this to the reference.
 constexpr double same_motion = 1e-2;

@@ -9,7 +9,7 @@ class Peers(ProgramTest):
     def test_engines_come_to_the_reference_or_are_named(self):
         document = self.json(FINE, "bench", "--quick", "--peers", "simulation/pendulum")
         engines = {series["engine"] for series in document["simulations"][0]["series"]}
-        self.assertEqual([peer["name"] for peer in document["peers"]], ["simbody", "mujoco"])
+        self.assertEqual([peer["name"] for peer in document["peers"]], ["simbody", "mujoco", "dart"])
         for peer in document["peers"]:
             if not peer["found"]:
                 self.assertIn("apt-get install", peer["help"])

@@ -45,6 +45,12 @@ std::string exact(double value) {
   return text.data();
 }
 
+std::string rough(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1e", value);
+  return text.data();
+}
+
 /// Where an engine comes to by a method and a setting; discarded if it does not.
 Json end_of(const std::string& program, const Problem& problem, const std::string& method, double setting) {
   return answer(program, {problem.name, exact(problem.end), method, exact(setting)});
@@ -65,7 +71,7 @@ double error_of(const Json& values, const Trial& trial, const Reference& referen
 /// All settings of a method, from coarse to fine until one takes too long.
 void add_method(Bench& bench, const Problem& problem, const Trial& trial, const Reference& reference,
                 const Json::json_pointer& place, Json& peer, const Json& method) {
-  const double longest = bench.plan.quick ? 1.0 : 5.0;
+  const double longest = bench.plan.quick ? 0.3 : 5.0;
   const std::string program = peer["program"];
   const std::string name = method["method"];
   Json series = {
@@ -89,7 +95,9 @@ void add_method(Bench& bench, const Problem& problem, const Trial& trial, const 
     if (timed.back().second > longest) break;
   }
   if (!(best < same_motion)) {
-    peer["left_out"].push_back(problem.name + ", " + name + ": comes nowhere near the reference");
+    const std::string nearest =
+        std::isfinite(best) ? "comes no nearer to the reference than " + rough(best) : "does not get to the end";
+    peer["left_out"].push_back(problem.name + ", " + name + ": " + nearest);
     return;
   }
   Json& all = bench.document.at(place);

@@ -76,6 +76,9 @@ class SpatialReference {
     return result;
   }
 
+  /// Of all nodes in the world, after one of the above.
+  const std::vector<PoseT<T>>& poses() const { return poses_; }
+
  private:
   using Six = Vector6T<T>;
 

@@ -2,12 +2,10 @@
 // of two steps, solimp near 1), the classical Runge-Kutta method, Newton's solver to 1e-10. Contacts are off. Angles
 // of bodies at the start stand in their poses, since a connect is made where the mechanism is assembled.
 #include <chrono>
-#include <cstring>
 #include <memory>
 #include <sstream>
 
-#include <mujoco/mujoco.h>
-
+#include "mujoco_model.hpp"
 #include "peer.hpp"
 
 namespace {
@@ -152,29 +150,11 @@ constexpr Problem problems[] = {{"pendulum", pendulum},
                                 {"heavy_top", heavy_top},
                                 {"fourbar_free", fourbar_free}};
 
-struct Free {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
-std::unique_ptr<mjModel, Free> compile(const std::string& text) {
-  const auto files = std::make_unique<mjVFS>();
-  mj_defaultVFS(files.get());
-  if (mj_makeEmptyFileVFS(files.get(), "model.xml", static_cast<int>(text.size())) != 0)
-    throw std::runtime_error("no memory");
-  std::memcpy(files->filedata[mj_findFileVFS(files.get(), "model.xml")], text.data(), text.size());
-  char error[500] = "";
-  std::unique_ptr<mjModel, Free> model(mj_loadXML("model.xml", files.get(), error, sizeof error));
-  mj_deleteVFS(files.get());
-  if (!model) throw std::runtime_error(error);
-  return model;
-}
-
 End simulate(const Mechanism& mechanism, double end, double wanted) {
   const auto steps = static_cast<long>(std::ceil(end / wanted - 1e-9));
   const double step = end / static_cast<double>(steps);
-  const auto model = compile(mechanism.text(step));
-  const std::unique_ptr<mjData, Free> data(mj_makeData(model.get()));
+  const auto model = koppel::peer::compile(mechanism.text(step));
+  const koppel::peer::Data data(mj_makeData(model.get()));
   for (const Joint& joint : mechanism.joints) {
     const int rate = model->jnt_dofadr[mj_name2id(model.get(), mjOBJ_JOINT, joint.name.c_str())];
     data->qvel[rate] = joint.rate;

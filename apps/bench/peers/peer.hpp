@@ -3,18 +3,23 @@
 //
 //   koppel_peer_NAME                                  what it can do, as JSON
 //   koppel_peer_NAME PROBLEM END METHOD SETTING       {"seconds": ..., "values": {"pivot.angle": ..., ...}}
+//   koppel_peer_NAME trees FILE ALGORITHM             the same for algorithms on trees, in the numbers of trees.hpp
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "trees.hpp"
 
 namespace koppel::peer {
 
@@ -73,19 +78,38 @@ inline End best(const Peer& peer, char** arguments) {
   return best;
 }
 
+inline void move(const Peer& peer, char** arguments) {
+  const End end = best(peer, arguments);
+  std::printf("{\"seconds\": %.9g, \"values\": {", end.seconds);
+  for (const Value& value : end.values) {
+    if (!std::isfinite(value.value)) throw std::runtime_error("the motion has no finite end");
+    std::printf("%s\"%s\": %.17g", &value == end.values.data() ? "" : ", ", value.name.c_str(), value.value);
+  }
+  std::printf("}}\n");
+}
+
+inline void evaluate_tree(const std::string& file, const std::string& name) {
+  const Tree tree = read_tree(file);
+  const std::unique_ptr<TreeEngine> engine = make_tree(tree);
+  const auto* const found = std::find(algorithm_names.begin(), algorithm_names.end(), name);
+  if (found == algorithm_names.end()) throw std::runtime_error("no such algorithm");
+  const auto algorithm = static_cast<Algorithm>(found - algorithm_names.begin());
+  const std::vector<double> answer = answer_of(*engine, algorithm, tree.states.size());
+  std::fwrite(answer.data(), sizeof(double), answer.size(), stdout);
+}
+
 inline int main_of(const Peer& peer, int count, char** arguments) {
-  if (count != 5) {
+  const bool trees = count == 4 && std::string(arguments[1]) == "trees";
+  if (count != 5 && !trees) {
     describe(peer);
     return count == 1 ? 0 : 2;
   }
   try {
-    const End end = best(peer, arguments);
-    std::printf("{\"seconds\": %.9g, \"values\": {", end.seconds);
-    for (const Value& value : end.values) {
-      if (!std::isfinite(value.value)) throw std::runtime_error("the motion has no finite end");
-      std::printf("%s\"%s\": %.17g", &value == end.values.data() ? "" : ", ", value.name.c_str(), value.value);
+    if (trees) {
+      evaluate_tree(arguments[2], arguments[3]);
+    } else {
+      move(peer, arguments);
     }
-    std::printf("}}\n");
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

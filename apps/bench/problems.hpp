@@ -20,6 +20,8 @@ struct Problem {
   std::vector<Digit> digits = {};
   std::string source = {};   ///< of the digits
   double uncertainty = 0.0;  ///< of them, beyond rounding
+  /// Measured too by the methods that keep loops as constraints.
+  bool with_multipliers = false;
 };
 
 const std::vector<Problem>& problems();

@@ -65,7 +65,7 @@ struct Held {
 void add_length(Bench& bench, const Chain& chain, int count, const Json::json_pointer& place) {
   const std::string text = chain.scene(count);
   const Problem problem = chain.problem(count);
-  const Setting setting{"dormand-prince", tolerance};
+  const Setting setting{dormand_prince, tolerance};
   const auto trial = std::make_shared<Trial>(load_text(text), problem.end);
   Json point = {{"size", count}, {"rates", trial->model().sizes().rates}};
   if (!trial->problem().empty()) return;

@@ -1,6 +1,7 @@
 // Motions by forces: error at the end over time, for each method and setting.
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "bench/bench.hpp"
 #include "bench/peers.hpp"
@@ -23,13 +24,22 @@ std::string short_number(double value) {
 /// One curve in the making: a problem solved by one method.
 class Curve {
  public:
+  /// Starts the curve among those at `series`.
   Curve(Bench& bench, const Problem& problem, std::shared_ptr<Trial> trial, const Reference& reference,
-        Json::json_pointer place)
-      : bench_(bench), problem_(problem), trial_(std::move(trial)), reference_(reference), place_(std::move(place)) {}
+        const Json::json_pointer& series, const Method& method)
+      : bench_(bench), problem_(problem), trial_(std::move(trial)), reference_(reference), method_(method) {
+    Json& all = bench.document.at(series);
+    all.push_back({{"engine", "koppel"},
+                   {"method", method.name},
+                   {"setting", method.steps ? "step" : "tolerance"},
+                   {"points", Json::array()}});
+    place_ = series / (all.size() - 1);
+  }
 
   /// Runs a setting once for its error, and leaves its time to the rounds. The number of evaluations it took; 0 if it
   /// did not get to the end.
-  std::uint64_t add(const Setting& setting) {
+  std::uint64_t add(double value) {
+    const Setting setting{method_, value};
     Json& points = bench_.document.at(place_)["points"];
     const double first = trial_->run(setting);
     const bool finished = !std::isnan(first);
@@ -39,7 +49,7 @@ class Curve {
     points.push_back(std::move(point));
     if (!finished) return 0;
     bench_.rounds.add(
-        problem_.name + ", " + setting.method + " " + short_number(setting.value),
+        problem_.name + ", " + setting.method.name + " " + short_number(setting.value),
         place_ / "points" / (points.size() - 1), [trial = trial_, setting] { return trial->run(setting); }, first);
     return trial_->summary().evaluations;
   }
@@ -64,11 +74,28 @@ class Curve {
   const Problem& problem_;
   std::shared_ptr<Trial> trial_;
   const Reference& reference_;
+  const Method& method_;
   Json::json_pointer place_;
 };
 
-Json series(const char* method, const char* setting) {
-  return {{"engine", "koppel"}, {"method", method}, {"setting", setting}, {"points", Json::array()}};
+void add_curves(Bench& bench, const Problem& problem, const std::shared_ptr<Trial>& trial, const Reference& reference,
+                const Json::json_pointer& place) {
+  Curve adaptive(bench, problem, trial, reference, place, dormand_prince);
+  Curve fixed(bench, problem, trial, reference, place, classical);
+  std::optional<Curve> by_tolerance, by_step;
+  if (problem.with_multipliers) {
+    by_tolerance.emplace(bench, problem, trial, reference, place, ggl);
+    by_step.emplace(bench, problem, trial, reference, place, index3);
+  }
+  for (const double tolerance : tolerances(bench.plan.quick)) {
+    const std::uint64_t evaluations = adaptive.add(tolerance);
+    if (by_tolerance) by_tolerance->add(tolerance);
+    if (evaluations <= 4) continue;
+    // As many evaluations in steps of one length, four to each.
+    const double step = 4.0 * problem.end / static_cast<double>(evaluations);
+    fixed.add(step);
+    if (by_step) by_step->add(step);
+  }
 }
 
 void add_problem(Bench& bench, const Problem& problem) {
@@ -88,15 +115,8 @@ void add_problem(Bench& bench, const Problem& problem) {
   entry["title"] = trial->model().name(KOPPEL_KIND_SCENE, 1);
   entry["reference"] = {
       {"source", reference.source}, {"uncertainty", reference.uncertainty}, {"quantities", reference.names}};
-  entry["series"] = {series("dormand-prince", "tolerance"), series("classical", "step")};
   const Json::json_pointer place = bench.entry("simulations", std::move(entry)) / "series";
-
-  Curve adaptive(bench, problem, trial, reference, place / 0), fixed(bench, problem, trial, reference, place / 1);
-  for (const double tolerance : tolerances(bench.plan.quick)) {
-    const std::uint64_t evaluations = adaptive.add({"dormand-prince", tolerance});
-    // As many evaluations in steps of one length, four to each.
-    if (evaluations > 4) fixed.add({"classical", 4.0 * problem.end / static_cast<double>(evaluations)});
-  }
+  add_curves(bench, problem, trial, reference, place);
   add_peers(bench, problem, *trial, reference, place);
 }
 

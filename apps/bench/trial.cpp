@@ -29,7 +29,9 @@ Place place_of(const Model& model, const std::string& name) {
 
 koppel_simulation_options options_of(const Setting& setting, double end) {
   auto options = sized<koppel_simulation_options>();
-  (setting.method == "classical" ? options.step : options.tolerance) = setting.value;
+  (setting.method.steps ? options.step : options.tolerance) = setting.value;
+  options.integrator = setting.method.integrator;
+  options.formulation = setting.method.formulation;
   options.end = end;
   return options;
 }
@@ -41,9 +43,9 @@ Reference computed(Trial& trial) {
   reference.names = trial.model().names(KOPPEL_KIND_COORDINATE, trial.model().sizes().coordinates);
   reference.source = "koppel at tolerances 1e-12 and 1e-13, as far as they agree";
   reference.uncertainty = not_a_number;
-  if (std::isnan(trial.run({"dormand-prince", coarse}))) return reference;
+  if (std::isnan(trial.run({dormand_prince, coarse}))) return reference;
   reference.values = trial.values(reference.names);
-  if (std::isnan(trial.run({"dormand-prince", fine}))) return reference;
+  if (std::isnan(trial.run({dormand_prince, fine}))) return reference;
   reference.uncertainty = error_of(trial, reference);
   reference.values = trial.values(reference.names);
   return reference;

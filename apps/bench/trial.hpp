@@ -13,10 +13,24 @@ namespace koppel::app::bench {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// A method of integration and its one setting.
+/// A method of integration, as koppel_integrators and koppel_formulations name its parts.
+struct Method {
+  const char* name;
+  const char* integrator;
+  const char* formulation;
+  bool steps;  ///< its setting is a step [s]; else the tolerance of one
+};
+
+inline constexpr Method dormand_prince = {"dormand-prince", "dormand_prince", "minimal", false};
+inline constexpr Method classical = {"classical", "classical", "minimal", true};
+/// Loops as constraints, with multipliers.
+inline constexpr Method ggl = {"ggl", "ida", "ggl", false};
+inline constexpr Method index3 = {"index3", "generalised_alpha", "index3", true};
+
+/// A method and its one setting.
 struct Setting {
-  std::string method;  ///< "dormand-prince" by tolerance, "classical" by step
-  double value;        ///< tolerance, or step [s]
+  const Method& method;
+  double value;
 };
 
 /// A closed start of a mechanism, kept with all that is needed to go on from it.

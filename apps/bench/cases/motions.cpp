@@ -21,7 +21,7 @@ Outcome moved_to(Model model, const Problem& problem, double growth) {
   Trial trial(std::move(model), problem.end);
   if (!trial.problem().empty()) return {trial.problem(), infinity, tolerance};
   const Reference reference = reference_of(problem, trial);
-  if (std::isnan(trial.run({"dormand-prince", tolerance}))) return {trial.problem(), infinity, tolerance};
+  if (std::isnan(trial.run({dormand_prince, tolerance}))) return {trial.problem(), infinity, tolerance};
   const auto steps = static_cast<double>(trial.summary().steps);
   std::ostringstream found;
   found << trial.summary().steps << " steps; energy to " << std::setprecision(2)

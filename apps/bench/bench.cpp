@@ -24,7 +24,8 @@ Bench prepared(const Plan& plan) {
                     {"repeats", bench.rounds.count()}, {"machine", machine()}};
   bench.document["machine"]["load"] = {{"before", load()}, {"after", nullptr}};
   bench.document["machine"]["yardstick"] = Json::object();
-  for (const char* section : {"simulations", "closures", "scaling", "cases"}) bench.document[section] = Json::array();
+  for (const char* section : {"simulations", "closures", "scaling", "cases", "profiles"})
+    bench.document[section] = Json::array();
   return bench;
 }
 
@@ -49,6 +50,8 @@ std::vector<std::string> all_names(const Plan& plan) {
   for (const std::string& scene : closure_scenes(plan.scenes)) names.push_back("closure/" + scene);
   for (const std::string& name : scaling_names()) names.push_back("scaling/" + name);
   for (const Case& hard : cases()) names.push_back("case/" + hard.name);
+  for (const std::string& scene : closure_scenes(plan.scenes)) names.push_back("profile/" + scene);
+  for (const Problem& problem : problems()) names.push_back("profile/" + problem.name);
   return names;
 }
 
@@ -60,6 +63,7 @@ Json run(const Plan& plan) {
   add_closures(bench);
   add_scaling(bench);
   add_cases(bench);
+  add_profiles(bench);
   bench.rounds.add("yardstick", Json::json_pointer("/machine/yardstick"), yardstick);
   bench.rounds.run(bench.document);
   bench.document["machine"]["load"]["after"] = load();

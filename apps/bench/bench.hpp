@@ -38,8 +38,10 @@ void add_simulations(Bench& bench);
 void add_closures(Bench& bench);
 /// chains of growing length: time, error and memory;
 void add_scaling(Bench& bench);
-/// and hard cases, each with what should come out. True: all did.
+/// hard cases, each with what should come out; true: all did;
 bool add_cases(Bench& bench);
+/// and where the time goes in the run of each scene. At once: nothing is left to the rounds.
+void add_profiles(Bench& bench);
 
 /// Runs all of it; `seconds` and the state of the machine are in the document at the end.
 Json run(const Plan& plan);

@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "bench/sampler.hpp"
 #include "common/markup.hpp"
 
 namespace koppel::app::bench {
@@ -14,6 +15,7 @@ table { border-collapse: collapse; font-size: 13px; margin: .6em 0; }
 td, th { padding: .15em .7em; text-align: left; border-bottom: 1px solid #ddd; vertical-align: top; }
 td.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 .pass { color: #1f7a4d; } .fail { color: #b3261e; font-weight: bold; }
+.bar { display: flex; width: 420px; height: 1.1em; background: #8885; } .bar span { height: 100%; }
 .charts { display: flex; flex-wrap: wrap; gap: 18px; }
 figure { margin: 0; } figcaption { font-size: 13px; max-width: 560px; }
 label { margin-right: 1em; white-space: nowrap; }
@@ -215,6 +217,32 @@ void add_cases(std::ostream& out, const Json& document) {
   }
 }
 
+/// Colour of a part; the last one is what is left of the bar.
+std::string colour(std::size_t part) { return {'k', static_cast<char>('0' + part % 8)}; }
+
+/// One bar for each scene, with the figures behind it.
+void add_profiles(std::ostream& out, const Json& document) {
+  if (document["profiles"].empty()) return;
+  out << "<h2>Where the time goes</h2>\n<p>Shares of the time of whole runs, by looking at the stack many times a "
+         "second: the innermost function that belongs to a part counts; what is left of a bar belongs to none. ";
+  const std::vector<std::string>& parts = profile_parts();
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i)
+    out << "<label><span class=\"key " << colour(i) << "\"></span>" << escaped(parts[i]) << "</label> ";
+  out << "</p>\n<table><thead><tr><th>scene</th><th>samples</th><th>runs</th><th>shares</th></tr></thead><tbody>\n";
+  for (const Json& scene : document["profiles"]) {
+    out << "<tr><td>" << text_of(scene["name"]) << "</td><td class=\"n\">" << scene["samples"]
+        << "</td><td class=\"n\">" << scene["runs"] << "</td><td>" << text_of(scene.value("why", ""))
+        << "<div class=\"bar\">";
+    for (std::size_t i = 0; i + 1 < scene["parts"].size(); ++i) {
+      const std::string percent = in_short(100.0 * scene["parts"][i]["share"].get<double>()) + '%';
+      out << "<span class=\"" << colour(i) << "\" style=\"width: " << percent << "\" title=\""
+          << text_of(scene["parts"][i]["part"]) << ' ' << percent << "\"></span>";
+    }
+    out << "</div></td></tr>\n";
+  }
+  out << "</tbody></table>\n";
+}
+
 void add_comparison(std::ostream& out, const Json& document) {
   if (!document.contains("comparison")) return;
   const Json& comparison = document["comparison"];
@@ -241,6 +269,7 @@ std::string page(const Json& document) {
   add_simulations(out, document);
   add_closures(out, document);
   add_scaling(out, document);
+  add_profiles(out, document);
   // The script stands in a section of characters, so that the page is XML too.
   out << "<div id=\"tip\"></div>\n<script>//<![CDATA[\n" << page_script << "//]]></script>\n</body>\n</html>\n";
   return out.str();

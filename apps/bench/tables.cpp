@@ -140,6 +140,22 @@ void show_cases(std::ostream& out, const Json& document) {
   }
 }
 
+void show_profiles(std::ostream& out, const Json& document) {
+  for (const Json& scene : document["profiles"]) {
+    out << (&scene == &document["profiles"].front() ? "\n" : "")
+        << format("%-20s ", scene["name"].get<std::string>().c_str());
+    if (scene.contains("why")) {
+      out << scene["why"].get<std::string>() << "\n";
+      continue;
+    }
+    for (const Json& part : scene["parts"]) {
+      const double share = part["share"].get<double>();
+      if (share >= 0.005) out << part["part"].get<std::string>() << format(" %.0f%%, ", 100.0 * share);
+    }
+    out << "of " << scene["samples"] << " samples\n";
+  }
+}
+
 void show_comparison(std::ostream& out, const Json& document) {
   if (!document.contains("comparison")) return;
   const Json& comparison = document["comparison"];
@@ -198,8 +214,12 @@ std::vector<File> tables(const Json& document) {
   }
   Csv hard_cases("cases.csv", columns({"name", "what", "expected", "found", "error", "allowed", "pass"}));
   for (const Json& hard : document["cases"]) hard_cases.row({&hard});
+  Csv profiles("profiles.csv", {"name", "samples", "runs", "part", "share"});
+  for (const Json& scene : document["profiles"]) {
+    for (const Json& part : scene["parts"]) profiles.row({&part, &scene});
+  }
   std::vector<File> files;
-  for (const Csv* csv : {&simulations, &closures, &scaling, &hard_cases}) csv->add_to(files);
+  for (const Csv* csv : {&simulations, &closures, &scaling, &hard_cases, &profiles}) csv->add_to(files);
   return files;
 }
 
@@ -216,6 +236,7 @@ std::string text(const Json& document) {
   show_closures(out, document);
   show_scaling(out, document);
   show_cases(out, document);
+  show_profiles(out, document);
   show_comparison(out, document);
   return out.str();
 }

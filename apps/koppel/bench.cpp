@@ -165,8 +165,8 @@ Exit bench_all(const Options& options) {
 }  // namespace
 
 void add_bench(CLI::App& app, const Common& /*common*/, Exit& outcome) {
-  CLI::App* command =
-      app.add_subcommand("bench", "Measure speed against error: motions, closures, growing chains, hard cases");
+  CLI::App* command = app.add_subcommand(
+      "bench", "Measure speed against error: motions, closures, growing chains, hard cases; and where the time goes");
   auto options = std::make_shared<Options>();
   options->plan.scenes = KOPPEL_SCENES;
   command->add_option("NAMES", options->plan.names, "What to measure, as --list names it; default: everything")

@@ -19,7 +19,8 @@ PLOTS += [] if SANITIZED else ["memory"]
 
 WORSE = 5  # the exit code
 
-SECTIONS = {"simulation": "simulations", "closure": "closures", "scaling": "scaling", "case": "cases"}
+SECTIONS = {"simulation": "simulations", "closure": "closures", "scaling": "scaling", "case": "cases",
+            "profile": "profiles"}
 
 
 def points_of(document):
@@ -128,6 +129,26 @@ class Document(ProgramTest):
                     allowed = (100 * chain["tolerance"] * point["evaluations"] / 6 if "tolerance" in chain
                                else 1e-14 * point["size"])
                     self.assertLess(point["error"], allowed)
+
+    def test_shares_of_a_profile_sum_to_one(self):
+        for scene in self.document["profiles"]:
+            with self.subTest(scene=scene["name"]):
+                if "why" in scene:
+                    self.assertEqual(scene["parts"], [])
+                    continue
+                self.assertGreater(scene["samples"], 0)
+                self.assertGreater(scene["runs"], 0)
+                self.assertEqual(scene["parts"][-1]["part"], "other")
+                self.assertAlmostEqual(sum(part["share"] for part in scene["parts"]), 1.0, delta=1e-12)
+                self.assertLess(scene["parts"][-1]["share"], 1.0)
+
+    def test_each_part_of_a_profile_has_a_share_somewhere(self):
+        shares = {}
+        for scene in self.document["profiles"]:
+            for part in scene["parts"]:
+                shares[part["part"]] = shares.get(part["part"], 0.0) + part["share"]
+        # Ceres is asked only where nearer ways fail; without any shares the names of functions are not known.
+        self.assertEqual([part for part in shares if part != "Ceres" and shares[part] == 0.0], [])
 
     def test_every_hard_case_comes_out_as_it_should(self):
         for case in self.document["cases"]:

@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "../dynamics/spatial_reference.hpp"
 #include "evaluation.hpp"
+#include "peer_table.hpp"
 #include "peers/trees.hpp"
 
 namespace koppel::bench {
@@ -138,16 +138,6 @@ double error_of(const double* found, std::size_t count, const std::vector<Exact>
 
 using Answer = std::vector<double>;
 
-/// What a command prints; nothing if it fails.
-std::string output_of(const std::string& command) {
-  std::string bytes;
-  std::FILE* const pipe = popen((command + " 2>/dev/null").c_str(), "r");
-  if (!pipe) return bytes;
-  std::array<char, 65536> part{};
-  while (const std::size_t size = std::fread(part.data(), 1, part.size(), pipe)) bytes.append(part.data(), size);
-  return pclose(pipe) == 0 ? bytes : std::string();
-}
-
 /// What is timed.
 struct Engine {
   std::string name;
@@ -165,55 +155,21 @@ Engine koppel_engine(const char* name, bool factored) {
           }};
 }
 
-/// koppel first, then those whose programs are beside this one.
-std::vector<Engine> all_engines() {
+/// koppel first.
+std::vector<Engine> all_engines(const std::vector<PeerProgram>& peers) {
   std::vector<Engine> engines = {koppel_engine("koppel", false), koppel_engine("koppel, factored", true)};
-  const std::string folder = std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
-  for (const char* const peer : {"simbody", "mujoco", "dart"}) {
-    const std::string program = "'" + folder + "/koppel_peer_" + peer + "'";
-    const auto can = nlohmann::json::parse(output_of(program), nullptr, false);
-    if (!can.is_object()) {
-      std::printf("without %s: its program was not built\n", peer);
-      continue;
-    }
-    engines.push_back({can["engine"].get<std::string>(), false,
-                       [program](const Tree& /*tree*/, const std::string& file, Algorithm algorithm) {
-                         const char* const name = peer::algorithm_names[static_cast<std::size_t>(algorithm)];
-                         const std::string bytes =
-                             output_of(std::string(program).append(" trees '").append(file).append("' ").append(name));
-                         Answer answer(bytes.size() / sizeof(double));
-                         std::memcpy(answer.data(), bytes.data(), answer.size() * sizeof(double));
-                         return answer;
-                       }});
+  for (const PeerProgram& program : peers) {
+    engines.push_back(
+        {program.engine, false, [program](const Tree& /*tree*/, const std::string& file, Algorithm algorithm) {
+           const char* const name = peer::algorithm_names[static_cast<std::size_t>(algorithm)];
+           const std::string bytes =
+               output_of(std::string(program.command).append(" trees '").append(file).append("' ").append(name));
+           Answer answer(bytes.size() / sizeof(double));
+           std::memcpy(answer.data(), bytes.data(), answer.size() * sizeof(double));
+           return answer;
+         }});
   }
   return engines;
-}
-
-/// One line of the table in the making: an engine on a tree, by rounds.
-struct Row {
-  std::vector<double> seconds, ratios;  ///< ratios: over the first engine in the same round
-  double error = 0.0;
-};
-
-double median(std::vector<double> sample) {
-  std::sort(sample.begin(), sample.end());
-  return 0.5 * (sample[(sample.size() - 1) / 2] + sample[sample.size() / 2]);
-}
-
-void show(const std::string& tree, Algorithm algorithm, const std::string& engine, const Row& row) {
-  std::printf("%-9s %-17s %-18s", tree.c_str(), peer::algorithm_names[static_cast<std::size_t>(algorithm)],
-              engine.c_str());
-  if (row.seconds.empty()) {
-    std::printf(" does not take the tree\n");
-    return;
-  }
-  if (!(row.error < same_result)) {
-    std::printf(" does not compute the same: error %.1e\n", row.error);
-    return;
-  }
-  const auto [least, greatest] = std::minmax_element(row.seconds.begin(), row.seconds.end());
-  std::printf("%10.3f us (%.3f to %.3f)  %6.2f times koppel's  error %.1e\n", 1e6 * median(row.seconds), 1e6 * *least,
-              1e6 * *greatest, median(row.ratios), row.error);
 }
 
 /// All engines in turn, round by round, so that what else the machine does meets all alike.
@@ -234,7 +190,8 @@ void compare(const std::vector<Engine>& engines, const Tree& tree, const std::st
     }
   }
   for (std::size_t i = 0; i < engines.size(); ++i) {
-    if (engines[i].does(algorithm)) show(tree.name, algorithm, engines[i].name, rows[i]);
+    if (engines[i].does(algorithm))
+      rows[i].show(tree.name, peer::algorithm_names[static_cast<std::size_t>(algorithm)], engines[i].name, same_result);
   }
   std::fflush(stdout);
 }
@@ -255,11 +212,13 @@ int main(int count, char** arguments) {
   using namespace koppel::bench;
   const int rounds = count < 2 ? 7 : std::max(1, std::atoi(arguments[1]));
   std::printf("%s, %s; medians of %d rounds (least to greatest)\n", KOPPEL_COMPILER, KOPPEL_FLAGS, rounds);
-  const std::vector<Engine> engines = all_engines();
+  const std::vector<PeerProgram> peers = peer_programs();
+  const std::vector<Engine> engines = all_engines(peers);
   const Scratch file;
   for (const Tree& tree : {arm7(), chain(30), chain(200)}) {
     koppel::peer::write_tree(handed(tree), file.name);
     for (std::size_t i = 0; i < koppel::peer::algorithm_names.size(); ++i)
       compare(engines, tree, file.name, static_cast<koppel::peer::Algorithm>(i), rounds);
   }
+  compare_loops(peers, rounds);
 }

@@ -4,23 +4,10 @@
 #include <sstream>
 #include <utility>
 
-#include "koppel_builtin_plugins.h"
 #include "scene/scene.hpp"
+#include "standard_types.hpp"
 
 namespace koppel::bench {
-namespace {
-
-std::shared_ptr<Registry> make_registry() {
-  RegistryOptions options;
-  for (std::size_t i = 0; i < koppel_builtin_plugin_count; ++i) {
-    options.builtins.push_back({koppel_builtin_plugins[i].type, koppel_builtin_plugins[i].entry});
-  }
-  options.log = silent_logger();
-  return std::make_shared<Registry>(std::move(options));
-}
-
-}  // namespace
-
 namespace {
 
 /// Compiles a scene and moves it through its run.
@@ -62,7 +49,7 @@ std::string chain_text(int count) {
 
 Result<Run> load(const std::string& name) {
   Run run;
-  run.registry = make_registry();
+  run.registry = standard_types();
   Diagnostics findings;
   KOPPEL_TRY(const Scene scene, read_scene_file(*run.registry, KOPPEL_SCENES "/" + name + ".toml", findings));
   return moved(std::move(run), scene, name, findings);
@@ -70,7 +57,7 @@ Result<Run> load(const std::string& name) {
 
 Result<Run> load_chain(int count) {
   Run run;
-  run.registry = make_registry();
+  run.registry = standard_types();
   Diagnostics findings;
   KOPPEL_TRY(const Scene scene, read_scene_text(*run.registry, chain_text(count), {}, findings));
   return moved(std::move(run), scene, "row", findings);

@@ -6,9 +6,9 @@
 #include <random>
 #include <sstream>
 
-#include "koppel_builtin_plugins.h"
 #include "mechanism/state.hpp"
 #include "scene/scene.hpp"
+#include "standard_types.hpp"
 
 namespace koppel::bench {
 namespace {
@@ -67,12 +67,7 @@ std::vector<TreeState> random_states(const Mechanism& mechanism, int count) {
 Tree Writer::tree(const std::string& name) const {
   Tree tree;
   tree.name = name;
-  RegistryOptions options;
-  for (std::size_t i = 0; i < koppel_builtin_plugin_count; ++i) {
-    options.builtins.push_back({koppel_builtin_plugins[i].type, koppel_builtin_plugins[i].entry});
-  }
-  options.log = silent_logger();
-  tree.registry = std::make_shared<Registry>(std::move(options));
+  tree.registry = standard_types();
   Diagnostics findings;
   auto scene = read_scene_text(*tree.registry, text_.str(), {}, findings);
   if (!scene) stop(findings.render());

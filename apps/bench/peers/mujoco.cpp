@@ -150,22 +150,49 @@ constexpr Problem problems[] = {{"pendulum", pendulum},
                                 {"heavy_top", heavy_top},
                                 {"fourbar_free", fourbar_free}};
 
+/// A model and where it starts.
+struct Moving {
+  Moving(const Mechanism& mechanism, double step)
+      : model(koppel::peer::compile(mechanism.text(step))), data(mj_makeData(model.get())) {
+    for (const Joint& joint : mechanism.joints) {
+      const int rate = rate_of(joint);
+      data->qvel[rate] = joint.rate;
+      data->qfrc_applied[rate] = joint.torque;
+    }
+    for (std::size_t i = 0; i < mechanism.spin.size(); ++i) data->qvel[i] = mechanism.spin[i];
+  }
+  int rate_of(const Joint& joint) const {
+    return model->jnt_dofadr[mj_name2id(model.get(), mjOBJ_JOINT, joint.name.c_str())];
+  }
+
+  koppel::peer::Model model;
+  koppel::peer::Data data;
+};
+
+/// As at a step that is as short as makes sense; of joints that are hinges.
+End accelerate(const Mechanism& mechanism) {
+  const Moving moving(mechanism, 1e-5);
+  End result{koppel::peer::least_seconds([&] {
+               mju_zero(moving.data->qacc_warmstart, moving.model->nv);
+               mj_forward(moving.model.get(), moving.data.get());
+             }),
+             {}};
+  for (const Joint& joint : mechanism.joints)
+    result.values.push_back({joint.name, moving.data->qacc[moving.rate_of(joint)]});
+  return result;
+}
+
 End simulate(const Mechanism& mechanism, double end, double wanted) {
   const auto steps = static_cast<long>(std::ceil(end / wanted - 1e-9));
   const double step = end / static_cast<double>(steps);
-  const auto model = koppel::peer::compile(mechanism.text(step));
-  const koppel::peer::Data data(mj_makeData(model.get()));
-  for (const Joint& joint : mechanism.joints) {
-    const int rate = model->jnt_dofadr[mj_name2id(model.get(), mjOBJ_JOINT, joint.name.c_str())];
-    data->qvel[rate] = joint.rate;
-    data->qfrc_applied[rate] = joint.torque;
-  }
-  for (std::size_t i = 0; i < mechanism.spin.size(); ++i) data->qvel[i] = mechanism.spin[i];
+  const Moving moving(mechanism, step);
+  const mjModel* const model = moving.model.get();
+  mjData* const data = moving.data.get();
   const auto begin = std::chrono::steady_clock::now();
-  for (long i = 0; i < steps; ++i) mj_step(model.get(), data.get());
+  for (long i = 0; i < steps; ++i) mj_step(model, data);
   End result{std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), {}};
   for (const Joint& joint : mechanism.joints) {
-    const int place = model->jnt_qposadr[mj_name2id(model.get(), mjOBJ_JOINT, joint.name.c_str())];
+    const int place = model->jnt_qposadr[mj_name2id(model, mjOBJ_JOINT, joint.name.c_str())];
     result.values.push_back({joint.name, joint.angle + data->qpos[place]});
   }
   const char* const parts[] = {".w", ".x", ".y", ".z"};
@@ -174,10 +201,9 @@ End simulate(const Mechanism& mechanism, double end, double wanted) {
   return result;
 }
 
-End run(const std::string& name, double end, const std::string& /*method*/, double setting) {
+Made make(const std::string& name) {
   for (const Problem& problem : problems) {
-    // Steps are parts of the time in which the mechanism moves.
-    if (name == problem.name) return simulate(*problem.make(), end, end * setting);
+    if (name == problem.name) return problem.make();
   }
   throw std::runtime_error("no such problem");
 }
@@ -190,6 +216,9 @@ int main(int count, char** arguments) {
   peer.engine = std::string("MuJoCo ") + mj_versionString();
   peer.methods = {{"runge-kutta-4", "step over time", {1e-2, 1e-3, 1e-4, 1e-5}}};
   for (const Problem& problem : problems) peer.problems.emplace_back(problem.name);
-  peer.run = run;
+  peer.run = [](const std::string& name, double end, const std::string& /*method*/, double setting) {
+    return simulate(*make(name), end, end * setting);  // steps are parts of the time in which the mechanism moves
+  };
+  peer.accelerate = [](const std::string& name) { return accelerate(*make(name)); };
   return koppel::peer::main_of(peer, count, arguments);
 }

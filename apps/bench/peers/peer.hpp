@@ -3,6 +3,7 @@
 //
 //   koppel_peer_NAME                                  what it can do, as JSON
 //   koppel_peer_NAME PROBLEM END METHOD SETTING       {"seconds": ..., "values": {"pivot.angle": ..., ...}}
+//   koppel_peer_NAME accelerations PROBLEM            the same with the accelerations at the start
 //   koppel_peer_NAME trees FILE ALGORITHM             the same for algorithms on trees, in the numbers of trees.hpp
 #pragma once
 
@@ -45,6 +46,8 @@ struct Peer {
   std::vector<std::string> problems;
   /// Moves the problem to a time [s] once. Throws what it cannot.
   std::function<End(const std::string& problem, double end, const std::string& method, double setting)> run;
+  /// Accelerations of a problem's coordinates at its start, and the time of one evaluation. Empty: it knows only steps.
+  std::function<End(const std::string& problem)> accelerate;
 };
 
 inline void print_list(const char* name, const std::vector<std::string>& words) {
@@ -78,11 +81,10 @@ inline End best(const Peer& peer, char** arguments) {
   return best;
 }
 
-inline void move(const Peer& peer, char** arguments) {
-  const End end = best(peer, arguments);
+inline void print(const End& end) {
   std::printf("{\"seconds\": %.9g, \"values\": {", end.seconds);
   for (const Value& value : end.values) {
-    if (!std::isfinite(value.value)) throw std::runtime_error("the motion has no finite end");
+    if (!std::isfinite(value.value)) throw std::runtime_error(value.name + " is not finite");
     std::printf("%s\"%s\": %.17g", &value == end.values.data() ? "" : ", ", value.name.c_str(), value.value);
   }
   std::printf("}}\n");
@@ -99,16 +101,18 @@ inline void evaluate_tree(const std::string& file, const std::string& name) {
 }
 
 inline int main_of(const Peer& peer, int count, char** arguments) {
-  const bool trees = count == 4 && std::string(arguments[1]) == "trees";
-  if (count != 5 && !trees) {
+  const std::string what = count > 1 ? arguments[1] : "";
+  const bool trees = count == 4 && what == "trees", accelerations = count == 3 && what == "accelerations";
+  if (count != 5 && !trees && !accelerations) {
     describe(peer);
     return count == 1 ? 0 : 2;
   }
   try {
+    if (accelerations && !peer.accelerate) throw std::runtime_error("it knows only steps");
     if (trees) {
       evaluate_tree(arguments[2], arguments[3]);
     } else {
-      move(peer, arguments);
+      print(accelerations ? peer.accelerate(arguments[2]) : best(peer, arguments));
     }
     return 0;
   } catch (const std::exception& error) {

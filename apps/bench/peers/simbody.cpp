@@ -173,13 +173,33 @@ constexpr Problem problems[] = {{"pendulum", pendulum},   {"double_pendulum", do
                                 {"andrews", andrews},     {"bricard", bricard},
                                 {"heavy_top", heavy_top}, {"fourbar_free", fourbar_free}};
 
-End simulate(Mechanism& mechanism, double end, const std::string& method, double accuracy) {
+SimTK::State start_of(Mechanism& mechanism) {
   SimTK::State state = mechanism.system.realizeTopology();
   for (Mechanism::Start& start : mechanism.starts) {
     start.joint.setAngle(state, start.angle);
     start.joint.setRate(state, start.rate);
   }
   if (mechanism.ball) mechanism.ball->setU(state, mechanism.spin);
+  return state;
+}
+
+/// Of joints that are hinges.
+End accelerate(Mechanism& mechanism) {
+  SimTK::State state = start_of(mechanism);
+  const SimTK::Vector q = state.getQ(), u = state.getU();
+  End result{koppel::peer::least_seconds([&] {
+               state.updQ() = q;
+               state.updU() = u;
+               mechanism.system.realize(state, SimTK::Stage::Acceleration);
+             }),
+             {}};
+  for (const Mechanism::Start& start : mechanism.starts)
+    result.values.push_back({start.name, start.joint.getOneUDot(state, 0)});
+  return result;
+}
+
+End simulate(Mechanism& mechanism, double end, const std::string& method, double accuracy) {
+  SimTK::State state = start_of(mechanism);
   std::unique_ptr<SimTK::Integrator> integrator;
   if (method == "cpodes") {
     integrator = std::make_unique<SimTK::CPodesIntegrator>(mechanism.system, SimTK::CPodes::BDF);
@@ -204,9 +224,9 @@ End simulate(Mechanism& mechanism, double end, const std::string& method, double
   return result;
 }
 
-End run(const std::string& name, double end, const std::string& method, double accuracy) {
+Made make(const std::string& name) {
   for (const Problem& problem : problems) {
-    if (name == problem.name) return simulate(*problem.make(), end, method, accuracy);
+    if (name == problem.name) return problem.make();
   }
   throw std::runtime_error("no such problem");
 }
@@ -221,6 +241,9 @@ int main(int count, char** arguments) {
   const std::vector<double> accuracies = {1e-3, 1e-5, 1e-7, 1e-9, 1e-11};
   peer.methods = {{"runge-kutta-merson", "accuracy", accuracies}, {"cpodes", "accuracy", accuracies}};
   for (const Problem& problem : problems) peer.problems.emplace_back(problem.name);
-  peer.run = run;
+  peer.run = [](const std::string& name, double end, const std::string& method, double accuracy) {
+    return simulate(*make(name), end, method, accuracy);
+  };
+  peer.accelerate = [](const std::string& name) { return accelerate(*make(name)); };
   return koppel::peer::main_of(peer, count, arguments);
 }

@@ -59,18 +59,27 @@ class TreeEngine {
 /// The engine of the program that asks.
 std::unique_ptr<TreeEngine> make_tree(const Tree& tree);
 
-/// Of one evaluation [s]: the least mean over all states, of some milliseconds.
-inline double seconds_of(TreeEngine& engine, Algorithm algorithm, std::size_t states) {
+/// Time [s] of something short: the least of some milliseconds' repetitions.
+template <typename Function>
+double least_seconds(const Function& once) {
   using Clock = std::chrono::steady_clock;
   double best = std::numeric_limits<double>::infinity(), sum = 0.0;
   for (int i = 0; i < 10000 && (i < 3 || sum < 20e-3); ++i) {
     const auto begin = Clock::now();
-    for (std::size_t state = 0; state < states; ++state) engine.evaluate(algorithm, state);
+    once();
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     sum += seconds;
     if (seconds < best) best = seconds;
   }
-  return best / static_cast<double>(states);
+  return best;
+}
+
+/// Of one evaluation [s], as the mean over all states.
+inline double seconds_of(TreeEngine& engine, Algorithm algorithm, std::size_t states) {
+  const double all = least_seconds([&] {
+    for (std::size_t state = 0; state < states; ++state) engine.evaluate(algorithm, state);
+  });
+  return all / static_cast<double>(states);
 }
 
 /// Calls a function with every number of the tree, in the order of its file; `links` and `states` are of their sizes.

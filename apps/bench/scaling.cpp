@@ -42,7 +42,12 @@ const std::vector<Chain>& chains() {
        pendulum_problem,
        {1, 2, 5, 10, 20},
        {1, 2, 5, 10, 20, 50, 100}},
-      {"fourbar_chain", "IFToMM A02, 1 s", fourbar_chain, fourbar_problem, {1, 2, 5}, {1, 2, 5, 10, 20, 40}},
+      {"fourbar_chain",
+       "IFToMM A02, 1 s",
+       fourbar_chain,
+       fourbar_problem,
+       {1, 2, 5, 40},
+       {1, 2, 5, 10, 20, 40, 100, 300, 1000, 4000}},
   };
   return table;
 }
@@ -130,7 +135,7 @@ class Row {
 
 void add_row(Bench& bench) {
   const std::vector<int> sizes =
-      bench.plan.quick ? std::vector<int>{1, 3, 10, 30} : std::vector<int>{1, 3, 10, 30, 100, 300};
+      bench.plan.quick ? std::vector<int>{1, 3, 10, 30} : std::vector<int>{1, 3, 10, 30, 100, 300, 1000};
   const Json::json_pointer place =
       bench.entry("scaling", {{"name", "fourbar_row"},
                               {"title", "four-bars driven by each other, one step of a run"},

@@ -81,6 +81,7 @@ class Curve {
 void add_curves(Bench& bench, const Problem& problem, const std::shared_ptr<Trial>& trial, const Reference& reference,
                 const Json::json_pointer& place) {
   Curve adaptive(bench, problem, trial, reference, place, dormand_prince);
+  Curve high_order(bench, problem, trial, reference, place, dop853);
   Curve fixed(bench, problem, trial, reference, place, classical);
   std::optional<Curve> by_tolerance, by_step;
   if (problem.with_multipliers) {
@@ -89,6 +90,7 @@ void add_curves(Bench& bench, const Problem& problem, const std::shared_ptr<Tria
   }
   for (const double tolerance : tolerances(bench.plan.quick)) {
     const std::uint64_t evaluations = adaptive.add(tolerance);
+    high_order.add(tolerance);
     if (by_tolerance) by_tolerance->add(tolerance);
     if (evaluations <= 4) continue;
     // As many evaluations in steps of one length, four to each.

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <limits>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace koppel {
@@ -34,7 +34,9 @@ class Remaining {
   struct Pivot {
     double cost = 0.0, less = 0.0;  ///< less: minus its part of the row's greatest entry
     std::uint32_t row = none, column = none;
-    auto operator<=>(const Pivot&) const = default;
+    bool operator<(const Pivot& other) const {
+      return std::tie(cost, less, row, column) < std::tie(other.cost, other.less, other.row, other.column);
+    }
   };
 
   /// Takes the best pivot and its column out of all other rows; nothing if none is left.

@@ -105,12 +105,53 @@ bool EquationsOfMotion::choose(const Eigen::VectorXd& q, double time) {
   for (const std::uint32_t column : elimination_.independent()) {
     independent_.push_back(mechanism_->rate_of_column[column]);
   }
+  find_shared_blocks();
   const auto f = static_cast<Eigen::Index>(independent_.size());
   transfer_.resize(mechanism_->columns, f);
   inertial_.resize(mechanism_->nv, f);
   mass_.resize(f, f);
   rhs_.resize(f);
   return true;
+}
+
+/// Independent rates of quaternions of which other rates depend: in the chart they do not stay where they are not
+/// turned about, but where their coordinates do not change.
+void EquationsOfMotion::find_shared_blocks() {
+  shared_.clear();
+  for (const StateBlock& block : mechanism_->blocks) {
+    if (is_scalar(block.kind)) continue;
+    const auto first = std::lower_bound(independent_.begin(), independent_.end(), block.v);
+    const auto last = std::lower_bound(first, independent_.end(), block.v + rate_count(block.kind));
+    if (last - first < static_cast<std::ptrdiff_t>(rate_count(block.kind))) shared_.insert(shared_.end(), first, last);
+  }
+  const auto count = static_cast<Eigen::Index>(shared_.size());
+  by_shared_.resize(count, count);
+  held_back_.resize(count);
+  shared_factors_ = Eigen::PartialPivLU<Eigen::MatrixXd>(count);
+}
+
+/// Turns the solution x_ of the rows' equations for b_ so that independent coordinates stay where they are in the
+/// chart.
+void EquationsOfMotion::hold_shared(const Chart& chart, const Eigen::VectorXd& delta) {
+  const auto along = [&](const auto& use) {
+    scatter(x_, step_);
+    chart.rates(delta, step_, step_rates_);
+    for (std::size_t i = 0; i < shared_.size(); ++i) use(static_cast<Eigen::Index>(i), step_rates_[shared_[i]]);
+  };
+  along([&](Eigen::Index i, double rate) { held_back_[i] = -rate; });
+  for (std::size_t j = 0; j < shared_.size(); ++j) {
+    x_.setZero();
+    x_[mechanism_->column_of_rate[shared_[j]]] = 1.0;
+    elimination_.follow(x_);
+    along([&](Eigen::Index i, double rate) { by_shared_(i, static_cast<Eigen::Index>(j)) = rate; });
+  }
+  shared_factors_.compute(by_shared_);
+  held_back_ = shared_factors_.solve(held_back_);
+  x_.setZero();
+  for (std::size_t j = 0; j < shared_.size(); ++j) {
+    x_[mechanism_->column_of_rate[shared_[j]]] = held_back_[static_cast<Eigen::Index>(j)];
+  }
+  elimination_.solve(b_, x_);
 }
 
 void EquationsOfMotion::scatter(const Eigen::VectorXd& columns, Eigen::VectorXd& rates) const {
@@ -143,9 +184,9 @@ bool EquationsOfMotion::close(const Chart& chart, double time, Eigen::VectorXd& 
     b_ = -equations_.residual;
     x_.setZero();
     elimination_.solve(b_, x_);
+    if (!shared_.empty()) hold_shared(chart, delta);
     scatter(x_, step_);
     chart.rates(delta, step_, step_rates_);
-    // The independent ones stay, also where others of their quaternion move.
     for (const std::uint32_t rate : independent_) step_rates_[rate] = 0.0;
     delta += step_rates_;
   }

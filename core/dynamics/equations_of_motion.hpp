@@ -6,12 +6,13 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
+#include "closure/elimination.hpp"
 #include "closure/equations.hpp"
 #include "dynamics/archive.hpp"
 #include "dynamics/chart.hpp"
 #include "dynamics/closure_rows.hpp"
-#include "closure/elimination.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/forward_dynamics.hpp"
 #include "dynamics/inertias.hpp"
@@ -132,6 +133,8 @@ class EquationsOfMotion {
  private:
   bool fail(Obstacle obstacle);
   bool take_inputs(double time);
+  void find_shared_blocks();
+  void hold_shared(const Chart& chart, const Eigen::VectorXd& delta);
   void scatter(const Eigen::VectorXd& columns, Eigen::VectorXd& rates) const;
   bool leave_unaccelerated(const double* states, double* state_rates);
   bool take_forces(const double* states, double* state_rates);
@@ -169,6 +172,10 @@ class EquationsOfMotion {
   Eigen::MatrixXd inertial_;             ///< nv x independent: efforts for unit accelerations
   Eigen::MatrixXd mass_;                 ///< independent x independent
   Eigen::VectorXd rhs_;
+  std::vector<std::uint32_t> shared_;  ///< independent rates of blocks whose other rates depend
+  Eigen::MatrixXd by_shared_;
+  Eigen::VectorXd held_back_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> shared_factors_;
   std::vector<Wrench> on_nodes_, carried_;
 };
 

@@ -85,6 +85,8 @@ std::string Simulation::remedy() const {
   const std::string look = "look at the motion up to there: a drive at its limit, a singular position";
   if (options_.step > 0.0)
     return look + ", or forces too stiff for the step: take a smaller one, or the integrator cvode";
+  if (options_.formulation == Formulation::ggl || options_.formulation == Formulation::index3)
+    return look + ", where multipliers have no values: the formulation minimal goes across";
   if (options_.integrator == IntegratorKind::cvode) return look + ", or a force that jumps";
   return look + ", or a force that is too stiff: for such there is the integrator cvode";
 }

@@ -5,6 +5,12 @@
 #include <limits>
 
 namespace koppel {
+namespace {
+
+constexpr double hardly = 1e-10;  // of the time: steps that short, so many in a row, lead nowhere
+constexpr int most_creeping = 1000;
+
+}  // namespace
 
 StepStatus SundialsIntegrator::step(double limit) {
   before_ = time_;
@@ -15,7 +21,8 @@ StepStatus SundialsIntegrator::step(double limit) {
     const long before = failures();
     const int flag = advance(limit, least, t);
     statistics_.rejected += static_cast<std::uint64_t>(failures() - before);
-    if (flag < 0) return StepStatus::too_small;
+    creeping_ = t - time_ < hardly * std::max(std::abs(limit), std::abs(time_)) ? creeping_ + 1 : 0;
+    if (flag < 0 || creeping_ > most_creeping) return StepStatus::too_small;
   }
   ++statistics_.steps;
   time_ = t;

@@ -40,6 +40,7 @@ class SundialsIntegrator : public Integrator {
 
  private:
   StepPolynomial polynomial_;
+  int creeping_ = 0;             ///< steps in a row that were hardly any
   Eigen::VectorXd raw_, moved_;  ///< as SUNDIALS has it; y
 };
 

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include <spdlog/logger.h>
 #include <spdlog/sinks/base_sink.h>
 
 #include "boundary.hpp"

@@ -1,6 +1,6 @@
 #include "boundary.hpp"
 #include "closure/close.hpp"
-#include "mechanism/records.hpp"
+#include "closure/recording.hpp"
 
 namespace {
 
@@ -114,14 +114,12 @@ koppel_status koppel_records(const koppel_state* state, koppel_work* work, doubl
   return koppel::guarded(nullptr, [&]() -> koppel_status {
     if (!koppel::fit(state, work) || values == nullptr) return KOPPEL_INVALID_ARGUMENT;
     if (count != state->mechanism->record_columns.size()) return KOPPEL_INVALID_ARGUMENT;
-    if (!koppel::realise(work->work, state->state)) return KOPPEL_PLUGIN;
     const koppel::Loads* loads = nullptr;
     if (state->mechanism->records_loads) {
       if (const koppel_status status = evaluate_loads(state, work, nullptr); status < 0) return status;
       loads = &work->reactions->loads();
     }
-    koppel::evaluate_records(*state->mechanism, state->state, work->work.equations.kinematics, loads, values);
-    return KOPPEL_OK;
+    return koppel::evaluate_recording(work->work, state->state, loads, values);
   });
 }
 

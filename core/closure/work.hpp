@@ -30,8 +30,8 @@ struct Work {
   std::shared_ptr<const Mechanism> mechanism;
   Equations equations;
   std::unique_ptr<Factorisation> factorisation;  ///< of the columns of the unknowns
-  bool factorised = false;        ///< equations stand, and `factorisation` holds, at the position below
-  Eigen::VectorXd factorised_at;  ///< nq
+  bool factorised = false;                       ///< equations stand, and `factorisation` holds, at the position below
+  Eigen::VectorXd factorised_at;                 ///< nq
   double factorised_time = 0.0;
   Factorisation::Condition condition;  ///< there
 
@@ -41,7 +41,8 @@ struct Work {
   Eigen::VectorXd step;                 ///< columns
   Eigen::VectorXd rest;                 ///< nv zeros
   Orientation orientation;              ///< of the columns of the unknowns
-  State saved;  ///< what a failed move goes back to
+  State saved;                          ///< what a failed move goes back to
+  std::unique_ptr<State> by_one;        ///< moved by one input alone, for transfer functions; made on first need
 
   /// Jacobian and factorisation where the equations stand, which is at q.
   void factorise(const Eigen::VectorXd& at, double time);

@@ -26,6 +26,17 @@ Derivative times(const Eigen::MatrixXd& factor, const Derivative& of) {
   return {factor * of.value, factor.cwiseAbs() * of.error};
 }
 
+/// Recorded columns that vary smoothly with the state: no axes, which have no place at rest, nor transfer functions.
+std::vector<std::uint32_t> output_columns(const Mechanism& mechanism) {
+  std::vector<std::uint32_t> columns;
+  for (std::uint32_t i = 0; i < mechanism.record_columns.size(); ++i) {
+    const RecordDescription& record = mechanism.records[mechanism.record_columns[i].record];
+    const bool axode = record.quantity == Quantity::fixed_axode || record.quantity == Quantity::moving_axode;
+    if (!record.by && !axode) columns.push_back(i);
+  }
+  return columns;
+}
+
 /// The motion near a state, as functions of deviations x and u.
 class Neighbourhood {
  public:
@@ -37,7 +48,9 @@ class Neighbourhood {
         shown_(state),
         efforts_(options.efforts),
         time_(state.time),
-        push_(Eigen::VectorXd::Zero(mechanism->nv)) {
+        push_(Eigen::VectorXd::Zero(mechanism->nv)),
+        outputs_(output_columns(*mechanism)),
+        recorded_(static_cast<Eigen::Index>(mechanism->record_columns.size())) {
     motion_.hold_drives(options.held);
     if (mechanism->records_loads) reactions_.emplace(mechanism, motion_.inertias());
   }
@@ -46,6 +59,7 @@ class Neighbourhood {
   Eigen::Index freedoms() const { return static_cast<Eigen::Index>(motion_.independent().size()); }
   Eigen::Index size() const { return 2 * freedoms() + mechanism_->internal_start.size(); }
   Eigen::Index drives() const { return static_cast<Eigen::Index>(mechanism_->inputs.size()); }
+  Eigen::Index outputs() const { return static_cast<Eigen::Index>(outputs_.size()); }
   Eigen::Index inputs() const { return 3 * drives() + static_cast<Eigen::Index>(efforts_.size()); }
 
   bool start(const Eigen::VectorXd& v) {
@@ -66,11 +80,12 @@ class Neighbourhood {
     shown_.v = motion_.v();
     shown_.internal = y_.segment(nv + f, states);
     if (reactions_ && !reactions_->evaluate(shown_)) return false;
-    out.resize(size() + static_cast<Eigen::Index>(mechanism_->record_columns.size()));
+    out.resize(size() + outputs());
     for (Eigen::Index i = 0; i < f; ++i) out[i] = y_rate_[coordinate(i)];
     out.segment(f, f + states) = y_rate_.segment(nv, f + states);
     evaluate_records(*mechanism_, shown_, motion_.kinematics(), reactions_ ? &reactions_->loads() : nullptr,
-                     out.data() + size());
+                     std::nullopt, recorded_.data());
+    out.tail(outputs()) = recorded_(outputs_);
     return true;
   }
 
@@ -132,6 +147,8 @@ class Neighbourhood {
   std::vector<std::uint32_t> efforts_;  ///< rates
   double time_;
   Eigen::VectorXd push_;
+  std::vector<std::uint32_t> outputs_;  ///< record columns
+  Eigen::VectorXd recorded_;            ///< all of them
   Eigen::MatrixXd follow_;
   Eigen::VectorXd y0_, y_, y_rate_;
 };
@@ -161,7 +178,9 @@ void name_all(const Mechanism& m, const LinearisationOptions& options, Linearisa
   for (const std::uint32_t v : options.efforts) {
     result.inputs.push_back({m.rate_names[v].name + " effort", unit_of(v) == "m" ? "N" : "N m"});
   }
-  for (const RecordColumn& column : m.record_columns) result.outputs.push_back({column.name, column.unit});
+  for (const std::uint32_t i : output_columns(m)) {
+    result.outputs.push_back({m.record_columns[i].name, m.record_columns[i].unit});
+  }
 }
 
 /// Whether the state changes, and its change.
@@ -230,7 +249,7 @@ Result<Linearisation> linearise(std::shared_ptr<const Mechanism> mechanism, cons
   Linearisation result;
   result.independent = near.motion().independent();
   name_all(m, options, result);
-  const Eigen::Index f = near.freedoms(), n = near.size(), outputs = static_cast<Eigen::Index>(m.record_columns.size());
+  const Eigen::Index f = near.freedoms(), n = near.size(), outputs = near.outputs();
   const Eigen::VectorXd x = Eigen::VectorXd::Zero(n), u = Eigen::VectorXd::Zero(near.inputs());
   Derivative by_x, by_u;
   Eigen::Index failed = -1;

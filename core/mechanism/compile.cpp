@@ -28,6 +28,10 @@ class Compiler {
     build_constraint_relations();
     number_rows();
     m().record_columns = record_columns(m());
+    for (std::uint32_t i = 0; i < m().inputs.size(); ++i) {
+      const auto by_it = [&](const RecordDescription& record) { return record.by && *record.by == m().inputs[i].of; };
+      if (std::any_of(m().records.begin(), m().records.end(), by_it)) m().record_inputs.push_back(i);
+    }
     m().records_loads = std::any_of(m().records.begin(), m().records.end(), [](const RecordDescription& record) {
       return record.subject == RecordSubject::joint_load || record.quantity == Quantity::effort;
     });

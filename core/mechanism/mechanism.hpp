@@ -148,6 +148,8 @@ class Mechanism {
   std::vector<RecordDescription> records;
   std::vector<RecordColumn> record_columns;
   bool records_loads = false;  ///< some record asks for what joints or drives bear
+  /// Inputs by which some record is a derivative, each once.
+  std::vector<std::uint32_t> record_inputs;
 
   std::uint32_t nq = 0, nv = 0;
   std::vector<StateBlock> blocks;  ///< of all joints, in file order

@@ -10,6 +10,7 @@ constexpr std::string_view quaternion_suffixes[] = {".w", ".x", ".y", ".z"};
 constexpr std::string_view vector_suffixes[] = {".x", ".y", ".z"};
 constexpr std::string_view tangent_suffixes[] = {".1", ".2"};
 constexpr std::string_view cardan_suffixes[] = {".alpha", ".beta", ".gamma"};
+constexpr std::string_view axode_suffixes[] = {".x", ".y", ".z", ".ux", ".uy", ".uz", ".pitch"};
 constexpr std::string_view no_suffix[] = {""};
 
 std::string coordinate_unit(BlockKind kind) {
@@ -56,31 +57,42 @@ struct QuantityColumns {
   std::span<const std::string_view> suffixes;
 };
 
+/// What stands for "per second" in the unit of a record, or for "per second squared".
+std::string per_time(const Mechanism& mechanism, const RecordDescription& record, int order) {
+  std::string unit = "/";
+  unit += record.by ? coordinate_unit(mechanism.joints[record.by->joint.index()].blocks[record.by->block].kind) : "s";
+  return order == 2 ? unit + "^2" : unit;
+}
+
 QuantityColumns quantity_columns(const Mechanism& mechanism, const RecordDescription& record) {
-  const auto coordinate = [&](std::string_view per_time) {
+  const auto coordinate = [&](const std::string& per) {
     const BlockKind kind = mechanism.joints[record.joint.index()].blocks[record.block].kind;
-    const std::string unit = is_scalar(kind) || per_time.empty() ? coordinate_unit(kind) : "rad";
-    return unit + std::string(per_time);
+    const std::string unit = is_scalar(kind) || per.empty() ? coordinate_unit(kind) : "rad";
+    return unit + per;
   };
+  const std::string first = per_time(mechanism, record, 1), second = per_time(mechanism, record, 2);
   const auto suffixes = [&](bool rates) {
     const BlockKind kind = mechanism.joints[record.joint.index()].blocks[record.block].kind;
     return rates ? rate_suffixes(kind) : coordinate_suffixes(kind);
   };
   switch (record.quantity) {
     case Quantity::value: return {coordinate(""), suffixes(false)};
-    case Quantity::rate: return {coordinate("/s"), suffixes(true)};
-    case Quantity::acceleration: return {coordinate("/s^2"), suffixes(true)};
+    case Quantity::rate: return {coordinate(first), suffixes(true)};
+    case Quantity::acceleration: return {coordinate(second), suffixes(true)};
     case Quantity::position: return {"m", vector_suffixes};
     case Quantity::quaternion: return {"1", quaternion_suffixes};
     case Quantity::cardan: return {"rad", cardan_suffixes};
-    case Quantity::velocity: return {"m/s", vector_suffixes};
-    case Quantity::angular_velocity: return {"rad/s", vector_suffixes};
-    case Quantity::linear_acceleration: return {"m/s^2", vector_suffixes};
-    case Quantity::angular_acceleration: return {"rad/s^2", vector_suffixes};
+    case Quantity::velocity: return {"m" + first, vector_suffixes};
+    case Quantity::angular_velocity: return {"rad" + first, vector_suffixes};
+    case Quantity::linear_acceleration: return {"m" + second, vector_suffixes};
+    case Quantity::angular_acceleration: return {"rad" + second, vector_suffixes};
     case Quantity::effort:
       return {effort_unit(mechanism.joints[record.joint.index()].blocks[record.block].kind), suffixes(true)};
     case Quantity::force: return {"N", vector_suffixes};
     case Quantity::moment: return {"N m", vector_suffixes};
+    // Each column has a unit of its own: record_columns().
+    case Quantity::fixed_axode:
+    case Quantity::moving_axode: return {"m", axode_suffixes};
   }
   return {"", no_suffix};
 }
@@ -129,6 +141,7 @@ std::vector<RecordColumn> record_columns(const Mechanism& mechanism) {
     const QuantityColumns all = quantity_columns(mechanism, mechanism.records[i]);
     for (std::uint32_t k = 0; k < all.suffixes.size(); ++k) {
       columns.push_back({mechanism.records[i].name + std::string(all.suffixes[k]), all.unit, i, k});
+      if (all.suffixes.data() == axode_suffixes && k >= 3) columns.back().unit = k < 6 ? "1" : "m/rad";
     }
   }
   return columns;

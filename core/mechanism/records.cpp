@@ -1,40 +1,62 @@
 #include "mechanism/records.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "spatial/angle_sequence.hpp"
+#include "spatial/screw_axis.hpp"
 
 namespace koppel {
 namespace {
 
 template <typename Vector>
-double* append(const Vector& from, double* to) {
-  return std::copy(from.data(), from.data() + from.size(), to);
+void append(const Vector& from, double* to) {
+  std::copy(from.data(), from.data() + from.size(), to);
 }
 
-double* coordinate(const Mechanism& mechanism, const State& state, const Loads* loads, const RecordDescription& record,
-                   double* to) {
+void coordinate(const Mechanism& mechanism, const State& state, const Loads* loads, const RecordDescription& record,
+                double* to) {
   const Joint& joint = mechanism.joints[record.joint.index()];
   const JointBlock& block = joint.blocks[record.block];
   const auto n = static_cast<Eigen::Index>(rate_count(block.kind));
   if (record.quantity == Quantity::rate) return append(state.v.segment(joint.v + block.v, n), to);
   if (record.quantity == Quantity::acceleration) return append(state.a.segment(joint.v + block.v, n), to);
   if (record.quantity == Quantity::effort) return append(loads->efforts.segment(joint.v + block.v, n), to);
-  return append(state.q.segment(joint.q + block.q, static_cast<Eigen::Index>(coordinate_count(block.kind))), to);
+  append(state.q.segment(joint.q + block.q, static_cast<Eigen::Index>(coordinate_count(block.kind))), to);
 }
 
-double* joint_cardan(const Mechanism& mechanism, const State& state, const RecordDescription& record, double* to) {
+void joint_cardan(const Mechanism& mechanism, const State& state, const RecordDescription& record, double* to) {
   const Joint& joint = mechanism.joints[record.joint.index()];
   const Vector4 q = state.q.segment<4>(joint.q + joint.blocks[record.block].q);
-  return append(CardanAngles::of_quaternion<double>(q).coordinates, to);
+  append(CardanAngles::of_quaternion<double>(q).coordinates, to);
 }
 
-double* joint_load(const Loads& loads, const RecordDescription& record, double* to) {
+void joint_load(const Loads& loads, const RecordDescription& record, double* to) {
   const Wrench& load = loads.joints[record.joint.index()];
-  return append(record.quantity == Quantity::force ? load.force : load.moment, to);
+  append(record.quantity == Quantity::force ? load.force : load.moment, to);
 }
 
-double* frame(const RecordDescription& record, const Kinematics& kinematics, double* to) {
+MotionSample sample(const Attachment& frame, const Kinematics& kinematics) {
+  const FrameMotion& motion = kinematics.motions[frame.body.value];
+  return {pose_of(kinematics, frame.body.value, frame.pose),
+          shifted(Twist{motion.angular_velocity, motion.velocity}, Vector3(-motion.at))};
+}
+
+/// Point, direction and pitch of the instantaneous screw axis (K-II-1.2.1c).
+void axode(const Mechanism& mechanism, const RecordDescription& record, const Kinematics& kinematics, double* to) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const MotionSample fixed = record.against ? sample(*record.against, kinematics) : MotionSample{};
+  const MotionSample motion = relative_sample(fixed, sample(record.frame, kinematics));
+  ScrewAxis axis = screw_axis<double>(motion.twist, mechanism.length);
+  if (record.quantity == Quantity::moving_axode) axis = transformed<double>(motion.x_01.inverse(), axis);
+  const bool rests = axis.kind == MotionKind::rest;
+  const bool far = rests || axis.kind == MotionKind::translation;
+  append(far ? Vector3(Vector3::Constant(none)) : axis.point(), to);
+  append(rests ? Vector3(Vector3::Constant(none)) : axis.line.direction, to + 3);
+  to[6] = rests ? none : axis.pitch;
+}
+
+void frame(const Mechanism& mechanism, const RecordDescription& record, const Kinematics& kinematics, double* to) {
   const Pose pose = pose_of(kinematics, record.frame.body.value, record.frame.pose);
   const FrameMotion motion = motion_of(kinematics, record.frame.body.value, record.frame.pose.position);
   switch (record.quantity) {
@@ -44,6 +66,8 @@ double* frame(const RecordDescription& record, const Kinematics& kinematics, dou
     case Quantity::angular_velocity: return append(motion.angular_velocity, to);
     case Quantity::linear_acceleration: return append(motion.acceleration, to);
     case Quantity::angular_acceleration: return append(motion.angular_acceleration, to);
+    case Quantity::fixed_axode:
+    case Quantity::moving_axode: return axode(mechanism, record, kinematics, to);
     case Quantity::value:
     case Quantity::rate:
     case Quantity::acceleration:
@@ -52,19 +76,21 @@ double* frame(const RecordDescription& record, const Kinematics& kinematics, dou
     case Quantity::moment:
     case Quantity::position: return append(pose.position, to);
   }
-  return to;
 }
 
 }  // namespace
 
 void evaluate_records(const Mechanism& mechanism, const State& state, const Kinematics& kinematics, const Loads* loads,
-                      double* values) {
-  for (const RecordDescription& record : mechanism.records) {
+                      const std::optional<CoordinateReference>& by, double* values) {
+  for (const RecordColumn& column : mechanism.record_columns) {
+    double* const to = values++;
+    const RecordDescription& record = mechanism.records[column.record];
+    if (column.component != 0 || record.by != by) continue;
     switch (record.subject) {
-      case RecordSubject::coordinate: values = coordinate(mechanism, state, loads, record, values); break;
-      case RecordSubject::joint_cardan: values = joint_cardan(mechanism, state, record, values); break;
-      case RecordSubject::joint_load: values = joint_load(*loads, record, values); break;
-      case RecordSubject::frame: values = frame(record, kinematics, values); break;
+      case RecordSubject::coordinate: coordinate(mechanism, state, loads, record, to); break;
+      case RecordSubject::joint_cardan: joint_cardan(mechanism, state, record, to); break;
+      case RecordSubject::joint_load: joint_load(*loads, record, to); break;
+      case RecordSubject::frame: frame(mechanism, record, kinematics, to); break;
     }
   }
 }

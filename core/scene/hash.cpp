@@ -128,6 +128,9 @@ class Stream {
     add(record.joint);
     add(std::uint64_t{record.block});
     add(record.frame);
+    // Scenes without these keep the hash that they had before there were any.
+    if (record.against) add(*record.against);
+    if (record.by) add(*record.by);
   }
 
  private:

@@ -28,6 +28,8 @@ constexpr auto of_frames = std::to_array<QuantityName>({
     {"angular_velocity", Quantity::angular_velocity},
     {"linear_acceleration", Quantity::linear_acceleration},
     {"angular_acceleration", Quantity::angular_acceleration},
+    {"fixed_axode", Quantity::fixed_axode},
+    {"moving_axode", Quantity::moving_axode},
 });
 
 /// The quantity that a record asks for; `value` if it asks for none.
@@ -119,6 +121,48 @@ void read_subject(Reading& reading, Scope& scope, const TableReader& table, cons
   }
 }
 
+/// `by`: the coordinate that takes the place of time.
+void read_by(Reading& reading, Scope& scope, const TableReader& table, const Node& node, RecordDescription& record) {
+  const Reporter& report = table.report();
+  const auto by = read_scalar_coordinate(reading, scope, table.values(), node, "`by`");
+  if (!by) return;
+  const auto& drives = reading.scene.drives;
+  if (std::none_of(drives.begin(), drives.end(), [&](const DriveDescription& drive) { return drive.of == *by; })) {
+    report.error(Code::not_driven, node.place, "no drive sets " + quote(node.text),
+                 "name a coordinate with a [[drive]]");
+    return;
+  }
+  for (const ConstraintDescription& constraint : reading.scene.constraints) {
+    if (constraint.type == nullptr || constraint.type->calls.time_rate == nullptr) continue;
+    report.error(Code::not_driven, node.place,
+                 "constraint " + quote(constraint.name) + " depends on time, so that nothing follows from drives alone",
+                 "record rates by time instead: leave out `by`");
+    return;
+  }
+  switch (record.quantity) {
+    case Quantity::rate:
+    case Quantity::acceleration:
+    case Quantity::velocity:
+    case Quantity::angular_velocity:
+    case Quantity::linear_acceleration:
+    case Quantity::angular_acceleration: record.by = by; return;
+    default:
+      report.error(Code::unknown_quantity, node.place, "`by` is for rates and accelerations",
+                   "add quantity = \"rate\" or \"acceleration\", of frames \"velocity\" and so on, or leave out `by`");
+  }
+}
+
+/// `against`: in which frame an axode is seen.
+void read_against(Reading& reading, Scope& scope, const TableReader& table, const Node& node,
+                  RecordDescription& record) {
+  if (record.quantity == Quantity::fixed_axode || record.quantity == Quantity::moving_axode) {
+    record.against = read_attachment(reading, scope, table.values(), node, "`against`");
+    return;
+  }
+  table.report().error(Code::unknown_quantity, node.place, "`against` is for axodes",
+                       "add quantity = \"fixed_axode\" or \"moving_axode\", or leave out `against`");
+}
+
 }  // namespace
 
 void read_record(Reading& reading, const Element& element) {
@@ -129,6 +173,7 @@ void read_record(Reading& reading, const Element& element) {
   const Node* of = table.require("of", "say what is recorded: of = \"joint.coordinate\", or a frame");
   Asked asked;
   asked.node = table.find("quantity");
+  const Node *by = table.find("by"), *against = table.find("against");
   table.finish();
   if (asked.node != nullptr) {
     const auto name = table.values().text(*asked.node, "`quantity`");
@@ -138,8 +183,11 @@ void read_record(Reading& reading, const Element& element) {
   if (of == nullptr) return;
   if (of->is_string()) {
     read_subject(reading, scope, table, *of, asked, record);
+    if (by != nullptr) read_by(reading, scope, table, *by, record);
+    if (against != nullptr) read_against(reading, scope, table, *against, record);
     if (!record.name.empty()) return;
     record.name = scope.prefix + of->text + (asked.node ? '.' + asked.name : "");
+    if (record.by) record.name += '/' + scope.prefix + by->text;
     if (!reading.record_names.insert(record.name).second) {
       table.report().error(Code::duplicate_name, of->place, quote(record.name) + " is recorded already",
                            "remove one of the records, or give it a name");
@@ -149,6 +197,8 @@ void read_record(Reading& reading, const Element& element) {
   record.subject = RecordSubject::frame;
   if (const auto frame = read_attachment(reading, scope, table.values(), *of, "`of`")) record.frame = *frame;
   choose(of_frames, asked, table.report(), "a frame", record.quantity);
+  if (by != nullptr) read_by(reading, scope, table, *by, record);
+  if (against != nullptr) read_against(reading, scope, table, *against, record);
   if (record.name.empty()) record.name = "frame" + std::to_string(element.index + 1);
 }
 

@@ -60,6 +60,8 @@ struct JointDescription {
 struct CoordinateReference {
   JointId joint;
   std::uint32_t block = 0;
+
+  friend constexpr bool operator==(CoordinateReference, CoordinateReference) = default;
 };
 
 struct ConstraintDescription {
@@ -92,7 +94,8 @@ enum class RecordSubject { coordinate, joint_cardan, joint_load, frame };
 
 /// Quantities of coordinates: value, rate, acceleration, effort. Of joints: force, moment; with a quaternion: cardan.
 /// Of frames, in world axes: position, quaternion, cardan, velocity, angular_velocity, linear_acceleration,
-/// angular_acceleration.
+/// angular_acceleration; fixed_axode, the axis about which it turns and along which it slides, as point, direction and
+/// pitch [m/rad]; moving_axode, the same in its own axes.
 enum class Quantity {
   value,
   rate,
@@ -107,6 +110,8 @@ enum class Quantity {
   effort,
   force,
   moment,
+  fixed_axode,
+  moving_axode,
 };
 
 /// One recorded thing; it makes as many columns as the quantity has components.
@@ -117,6 +122,8 @@ struct RecordDescription {
   JointId joint;
   std::uint32_t block = 0;
   Attachment frame;
+  std::optional<Attachment> against;      ///< of axodes: in which frame the other moves; none: in the world
+  std::optional<CoordinateReference> by;  ///< a driven coordinate that takes the place of time in rates
 };
 
 enum class Direction { either, rising, falling };

@@ -28,7 +28,7 @@ class Exports(unittest.TestCase):
         self.functions = set(Header(INCLUDE).functions)
 
     def test_the_header_was_understood(self):
-        text = (INCLUDE / "koppel" / "koppel.h").read_text(encoding="utf-8")
+        text = "".join((INCLUDE / "koppel" / name).read_text(encoding="utf-8") for name in ("koppel.h", "dynamics.h"))
         self.assertEqual(len(self.functions), len(re.findall(r"^KOPPEL_EXPORT ", text, flags=re.M)))
 
     def test_the_library_exports_what_the_header_declares(self):

@@ -62,7 +62,7 @@ TEST(Names, ThatAreMisspeltAreCorrected) {
 
 TEST(Errors, OfAFileSayWhereAndWhatToDo) {
   const Engine engine = make_engine();
-  const std::string file = std::string(KOPPEL_TEST_FOLDER) + "/misspelt.toml";
+  const std::string file = tests_folder() + "/abi/misspelt.toml";
   koppel_diagnostics* list = nullptr;
   ASSERT_EQ(koppel_diagnostics_create(&list), KOPPEL_OK);
   const Diagnostics owned(list);
@@ -105,7 +105,7 @@ TEST(Errors, OfAFileThatIsNotThereNameIt) {
 
 TEST(Errors, OfPluginsNameThem) {
   const Engine engine = make_engine();
-  const std::string folder = KOPPEL_TEST_PLUGINS "/bad/";
+  const std::string folder = test_plugins_folder() + "/bad/";
   auto error = sized<koppel_error>();
   EXPECT_EQ(koppel_engine_load_plugin(engine.get(), (folder + "no_entry.so").c_str(), &error), KOPPEL_PLUGIN);
   EXPECT_STREQ(error.code, "E0503");
@@ -146,7 +146,7 @@ TEST(Errors, LongerThanTheirFieldsAreCutAndEnded) {
 
 // The crank turns once in a second, so that it meets its limit of 30 degrees after 1/12 s.
 TEST(Errors, OfAMoveNameTheTimeThatWasAskedFor) {
-  const Host host(std::string(KOPPEL_TEST_FOLDER) + "/out_of_reach.toml");
+  const Host host(tests_folder() + "/abi/out_of_reach.toml");
   auto error = sized<koppel_error>();
   ASSERT_GE(host.move(0.0), 0);
   ASSERT_EQ(koppel_move(host.state.get(), host.work.get(), 0.125, nullptr, &error), KOPPEL_NOT_CLOSED);
@@ -156,7 +156,7 @@ TEST(Errors, OfAMoveNameTheTimeThatWasAskedFor) {
 
 // At 90 degrees the pin is a crank's length from the slider's line, and the rod reaches half of that.
 TEST(Errors, OfAssemblyTellHowFarItIsFromClosing) {
-  const Host host(std::string(KOPPEL_TEST_FOLDER) + "/out_of_reach.toml");
+  const Host host(tests_folder() + "/abi/out_of_reach.toml");
   auto error = sized<koppel_error>();
   auto report = sized<koppel_report>();
   ASSERT_EQ(koppel_state_set_input(host.state.get(), 0, 1.5707963267948966, 0.0, 0.0), KOPPEL_OK);
@@ -172,6 +172,7 @@ TEST(Codes, AllHaveAnExplanation) {
   const std::pair<int, const char*> codes[] = {
 #define KOPPEL_CODE(number, identifier, explanation) {number, #identifier},
 #include "base/codes.inc"
+#include "folders.hpp"
 #undef KOPPEL_CODE
   };
   int last = 0;

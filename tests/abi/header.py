@@ -1,9 +1,9 @@
-"""What koppel.h and plugin.h declare, read from their text: functions, structs and constants."""
+"""What the ABI headers declare, read from their text: functions, structs and constants."""
 
 import pathlib
 import re
 
-HEADERS = ("plugin.h", "koppel.h")
+HEADERS = ("plugin.h", "koppel.h", "dynamics.h")
 
 
 def _plain(text):

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "common/handles.hpp"
+#include "folders.hpp"
 
 namespace koppel::test {
 
@@ -43,7 +44,7 @@ inline Work make_work(const Mechanism& mechanism) {
 /// Everything that a host holds for a scene: a shipped one by its name, or another by its file.
 struct Host {
   explicit Host(const std::string& name) : engine(make_engine()) {
-    const std::string file = name.find('/') == std::string::npos ? KOPPEL_SCENES "/" + name + ".toml" : name;
+    const std::string file = name.find('/') == std::string::npos ? scenes_folder() + "/" + name + ".toml" : name;
     koppel_scene* read = nullptr;
     EXPECT_EQ(koppel_scene_from_file(engine.get(), file.c_str(), nullptr, &read, nullptr), KOPPEL_OK);
     scene.reset(read);

@@ -1,8 +1,10 @@
 // Handles in any order, and one mechanism in several threads.
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <thread>
 
+#include "folders.hpp"
 #include "host.hpp"
 
 namespace koppel::test {
@@ -62,13 +64,15 @@ TEST(Handles, OfAStreamOutliveTheRest) {
 TEST(Handles, KeepAPluginLoaded) {
   Host host("rstr");
   auto options = sized<koppel_engine_options>();
-  options.standard_plugins = KOPPEL_STANDARD_PLUGINS;
+  const std::string plugins = standard_plugins_folder();
+  options.standard_plugins = plugins.c_str();
   koppel_engine* engine = nullptr;
   ASSERT_EQ(koppel_engine_create(KOPPEL_ABI_MAJOR, KOPPEL_ABI_MINOR, &options, &engine, nullptr), KOPPEL_OK);
   host.state.reset();
   host.work.reset();
   koppel_scene* scene = nullptr;
-  EXPECT_EQ(koppel_scene_from_file(engine, KOPPEL_SCENES "/rstr.toml", nullptr, &scene, nullptr), KOPPEL_OK);
+  EXPECT_EQ(koppel_scene_from_file(engine, (scenes_folder() + "/rstr.toml").c_str(), nullptr, &scene, nullptr),
+            KOPPEL_OK);
   koppel_engine_destroy(engine);
   host.mechanism = compile(scene);
   koppel_scene_destroy(scene);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "folders.hpp"
 #include "host.hpp"
 
 namespace koppel::test {
@@ -87,7 +88,7 @@ TEST(Modes, OfAnOpenChainAreOne) {
 }
 
 TEST(Modes, ThatAreNotThereAreNoFailure) {
-  const Host host(KOPPEL_TEST_FOLDER "/out_of_reach.toml");
+  const Host host(tests_folder() + "/abi/out_of_reach.toml");
   ASSERT_EQ(koppel_state_set_time(host.state.get(), 0.25, nullptr), KOPPEL_OK);
   const Modes modes = find(host);
   EXPECT_EQ(summary_of(modes).count, 0u);

@@ -1,4 +1,5 @@
 // NULL for every pointer of every function that needs one: refused, and what else could be written stays as it was.
+#include "folders.hpp"
 #include "host.hpp"
 
 namespace koppel::test {
@@ -49,7 +50,8 @@ TEST_F(NullPointers, OfScenesAreRefused) {
   Output<koppel_scene*> out;
   EXPECT_EQ(koppel_scene_from_file(nullptr, "a.toml", nullptr, &out, nullptr), refused);
   EXPECT_EQ(koppel_scene_from_file(engine, nullptr, nullptr, &out, nullptr), refused);
-  EXPECT_EQ(koppel_scene_from_file(engine, KOPPEL_SCENES "/rstr.toml", nullptr, nullptr, nullptr), refused);
+  EXPECT_EQ(koppel_scene_from_file(engine, (scenes_folder() + "/rstr.toml").c_str(), nullptr, nullptr, nullptr),
+            refused);
   EXPECT_EQ(koppel_scene_from_text(nullptr, "", 0, nullptr, nullptr, &out, nullptr), refused);
   EXPECT_EQ(koppel_scene_from_text(engine, nullptr, 0, nullptr, nullptr, &out, nullptr), refused);
   EXPECT_EQ(koppel_scene_from_text(engine, "schema = 1", 10, nullptr, nullptr, nullptr, nullptr), refused);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "folders.hpp"
 #include "host.hpp"
 
 namespace koppel::test {
@@ -141,7 +142,8 @@ TEST(StructSizes, OfOptionsMayBeOlder) {
   ASSERT_EQ(koppel_engine_create(KOPPEL_ABI_MAJOR, KOPPEL_ABI_MINOR, &engine_options, &engine, nullptr), KOPPEL_OK);
   const Engine owned(engine);
   koppel_scene* scene = nullptr;
-  ASSERT_EQ(koppel_scene_from_file(engine, KOPPEL_SCENES "/rstr.toml", nullptr, &scene, nullptr), KOPPEL_OK);
+  ASSERT_EQ(koppel_scene_from_file(engine, (scenes_folder() + "/rstr.toml").c_str(), nullptr, &scene, nullptr),
+            KOPPEL_OK);
   koppel_scene_destroy(scene);
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "folders.hpp"
 #include "host.hpp"
 
 namespace koppel::test {
@@ -72,7 +73,7 @@ class Trees : public ::testing::Test {
   }
 
   static constexpr std::size_t count = 5;
-  Host host{KOPPEL_SCENES "/dynamics/double_pendulum.toml"};
+  Host host{scenes_folder() + "/dynamics/double_pendulum.toml"};
   Tree tree = make_tree(host.mechanism);
   const std::size_t nq = host.sizes.coordinates, nv = host.sizes.rates;
   std::vector<double> q, v, a;
@@ -197,7 +198,7 @@ TEST(Tree, NamesWhatMovesWithoutMass) {
 }
 
 TEST(Tree, OfALoopIsOpenWhereItIsCut) {
-  const Host host(KOPPEL_SCENES "/dynamics/fourbar_free.toml");
+  const Host host(scenes_folder() + "/dynamics/fourbar_free.toml");
   const Tree tree = make_tree(host.mechanism);
   const std::size_t nv = host.sizes.rates;
   auto cut = sized<koppel_closure>();
@@ -221,7 +222,7 @@ TEST(Tree, OfALoopIsOpenWhereItIsCut) {
 TEST(Tree, OutlivesItsMechanism) {
   Tree tree;
   {
-    const Host host(KOPPEL_SCENES "/dynamics/double_pendulum.toml");
+    const Host host(scenes_folder() + "/dynamics/double_pendulum.toml");
     tree = make_tree(host.mechanism);
   }
   const std::vector<double> q(2, 0.3);

@@ -191,6 +191,32 @@ TEST(Record, is_of_coordinates_joints_and_frames) {
   EXPECT_EQ(scene.records[4].quantity, Quantity::value);
 }
 
+TEST(Record, by_a_driven_coordinate_is_named_after_it) {
+  SceneReader reader;
+  const Scene scene = reader.good(chain +
+                                  "[[drive]]\nof = 'first.angle'\ntype = 'constant'\nvalue = 1\n"
+                                  "[[record]]\nof = 'second.angle'\nquantity = 'rate'\nby = 'first.angle'\n"
+                                  "[[record]]\nof = 'second.angle'\nquantity = 'rate'\n");
+  ASSERT_EQ(scene.records.size(), 2u);
+  EXPECT_EQ(scene.records[0].name, "second.angle.rate/first.angle");
+  EXPECT_EQ(scene.records[0].by, (CoordinateReference{JointId{0}, 0}));
+  EXPECT_EQ(scene.records[1].name, "second.angle.rate");
+  EXPECT_FALSE(scene.records[1].by.has_value());
+}
+
+TEST(Record, of_an_axode_is_against_the_world_or_a_frame) {
+  SceneReader reader;
+  const Scene scene = reader.good(chain +
+                                  "[[record]]\nof = 'c'\nquantity = 'fixed_axode'\n"
+                                  "[[record]]\nof = 'c'\nquantity = 'moving_axode'\nagainst = 'a'\n");
+  ASSERT_EQ(scene.records.size(), 2u);
+  EXPECT_EQ(scene.records[0].quantity, Quantity::fixed_axode);
+  EXPECT_FALSE(scene.records[0].against.has_value());
+  EXPECT_EQ(scene.records[1].quantity, Quantity::moving_axode);
+  ASSERT_TRUE(scene.records[1].against.has_value());
+  EXPECT_EQ(scene.records[1].against->body, BodyId{1});
+}
+
 TEST(Record, of_cardan_angles_is_of_the_joint_if_body_and_joint_have_one_name) {
   SceneReader reader;
   const Scene scene = reader.good(

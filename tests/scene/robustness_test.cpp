@@ -25,7 +25,9 @@ const std::string good_scene =
     "[[force]]\nname = 'brake'\ntype = 'coordinate_spring'\nof = 'pin.angle'\nstiffness = 10\ndamping = 0.1\n"
     "[[watch]]\nof = 'pin.angle'\nquantity = 'rate'\nvalue = '-5 deg'\ndirection = 'falling'\nstop = true\n"
     "[simulation]\nintegrator = 'ida'\nformulation = 'ggl'\ntolerance = 1e-6\n"
-    "[[record]]\nof = 'ball'\nquantity = 'cardan'\n";
+    "[[record]]\nof = 'ball'\nquantity = 'cardan'\n"
+    "[[record]]\nof = 'tip'\nquantity = 'velocity'\nby = 'pin.angle'\n"
+    "[[record]]\nof = 'coupler'\nquantity = 'moving_axode'\nagainst = 'crank'\n";
 
 /// Reads the text; a scene comes without errors, errors come with a place in the text.
 void expect_sane(SceneReader& reader, const std::string& text) {

@@ -17,8 +17,7 @@ struct Analysis {
   double gap = 0.0;                  ///< last that counts over first that does not; infinity: none left
 };
 
-/// At a closed state, from the singular values; a value counts above 10 max(m, n) eps times the largest. False: a
-/// plugin failed.
+/// At a closed state, by rank_of(). False: a plugin failed.
 bool analyse(Work& work, const State& state, Analysis& analysis);
 
 }  // namespace koppel

@@ -7,10 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/SVD>
-
+#include "closure/decompositions.hpp"
 #include "closure/scalar_roots.hpp"
 #include "spatial/rotation_coordinates.hpp"
 

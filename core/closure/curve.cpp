@@ -5,10 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
-
+#include "closure/decompositions.hpp"
 #include "closure/newton.hpp"
 
 namespace koppel {

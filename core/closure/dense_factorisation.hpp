@@ -1,8 +1,7 @@
 // Factorisation of a small Jacobian.
 #pragma once
 
-#include <Eigen/QR>
-
+#include "closure/decompositions.hpp"
 #include "closure/factorisation.hpp"
 
 namespace koppel {

@@ -57,7 +57,22 @@ class Remaining {
     return pivot;
   }
 
+  /// The greatest scaled entry of the rows that offer no pivot.
+  double rest() const {
+    double greatest = 0.0;
+    for (const SparseRow& row : rows_) greatest = std::max(greatest, greatest_of(row));
+    return greatest;
+  }
+
  private:
+  double greatest_of(const SparseRow& row) const {
+    double greatest = 0.0;
+    for (const auto& [column, value] : row) {
+      if (column < rows_with_.size()) greatest = std::max(greatest, std::abs(value) * scale_[column]);
+    }
+    return greatest;
+  }
+
   void subtract(const SparseRow& row, std::uint32_t column, std::uint32_t from) {
     const double factor = rows_[from].at(column) / row.at(column);
     for (const auto& [other, value] : row) {
@@ -74,10 +89,7 @@ class Remaining {
 
   void offer(std::uint32_t i) {
     withdraw(i);
-    double greatest = 0.0;
-    for (const auto& [column, value] : rows_[i]) {
-      if (column < rows_with_.size()) greatest = std::max(greatest, std::abs(value) * scale_[column]);
-    }
+    const double greatest = greatest_of(rows_[i]);
     if (!(greatest > least_)) return;
     for (const auto& [column, value] : rows_[i]) {
       if (column >= rows_with_.size()) continue;
@@ -117,6 +129,7 @@ void Elimination::choose(const std::vector<double>& values, const std::vector<do
   for (auto pivot = remaining.eliminate(); pivot.row != none; pivot = remaining.eliminate()) {
     pivots_.push_back({pivot.row, pivot.column, 0, 0, scale[pivot.column]});
   }
+  remainder_ = remaining.rest();
   lay_out();
 }
 

@@ -49,6 +49,9 @@ class Elimination {
   /// scales of their columns.
   double margin() const { return margin_; }
 
+  /// The greatest entry, in these scales, that was left of the rows without a pivot when pivots were chosen.
+  double remainder() const { return remainder_; }
+
   /// x of the dependent columns from J x = b and the other columns' x. b: of all rows.
   void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
   /// How all columns follow from the independent ones where J x = 0: columns x independent.
@@ -79,6 +82,7 @@ class Elimination {
   std::uint32_t choosable_ = 0;
   std::vector<Pivot> pivots_;
   double margin_ = 1.0;
+  double remainder_ = 0.0;
   std::vector<std::uint32_t> dependent_, independent_, kept_, left_out_;
   std::vector<Entry> lower_, upper_;      ///< rows of L left of the diagonal; rows of U, R over the pivot
   std::vector<double> inverse_;           ///< of the pivots

@@ -4,8 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/QR>
-
+#include "closure/decompositions.hpp"
 #include "closure/flow_plan.hpp"
 #include "closure/loop_kind.hpp"
 

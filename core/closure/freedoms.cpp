@@ -4,13 +4,11 @@
 #include <cmath>
 #include <set>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
-
-#include "closure/factorisation.hpp"
+#include "closure/decompositions.hpp"
 #include "closure/load_paths.hpp"
 #include "closure/loop_kind.hpp"
 #include "closure/newton.hpp"
+#include "closure/rank.hpp"
 #include "spatial/vector.hpp"
 
 namespace koppel {
@@ -21,32 +19,6 @@ constexpr double stayed = 1e-2 * nearby;  // who comes back closer than this has
 constexpr int attempts = 3;
 constexpr double negligible = 1e-8;    // half the digits: of a velocity, or a load, beside others
 constexpr double alone = 1.0 - 1e-12;  // all others move less than a millionth of what the body does
-
-/// Rank, freedoms and states of self-stress of the Jacobian of all tree rates.
-struct Spaces {
-  Eigen::Index rank = 0;
-  Eigen::MatrixXd motions;   ///< columns: scaled rates that keep all loops closed
-  Eigen::MatrixXd stresses;  ///< columns: multipliers of the scaled equations that load no rate
-};
-
-Eigen::Index rank_of(const Eigen::VectorXd& values, const Eigen::MatrixXd& jacobian) {
-  if (values.size() == 0) return 0;
-  return (values.array() > rank_tolerance(jacobian.rows(), jacobian.cols(), values[0])).count();
-}
-
-Spaces spaces_of(const Eigen::MatrixXd& jacobian) {
-  Spaces spaces;
-  if (jacobian.size() == 0) {
-    spaces.motions = Eigen::MatrixXd::Identity(jacobian.cols(), jacobian.cols());
-    spaces.stresses = Eigen::MatrixXd::Identity(jacobian.rows(), jacobian.rows());
-    return spaces;
-  }
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  spaces.rank = rank_of(svd.singularValues(), jacobian);
-  spaces.motions = svd.matrixV().rightCols(jacobian.cols() - spaces.rank);
-  spaces.stresses = svd.matrixU().rightCols(jacobian.rows() - spaces.rank);
-  return spaces;
-}
 
 /// Rates of the state from scaled rates of the columns.
 Eigen::VectorXd rates_of(const Mechanism& mechanism, const Eigen::VectorXd& scaled) {
@@ -104,7 +76,7 @@ void find_kinds(const Work& work, const Eigen::VectorXd& q, Freedoms& freedoms) 
 }
 
 /// Ranks at some closed positions around this one.
-void look_nearby(Work& work, const State& state, const Spaces& here, Freedoms& freedoms) {
+void look_nearby(Work& work, const State& state, const NullSpaces& here, Freedoms& freedoms) {
   const Mechanism& mechanism = *work.mechanism;
   Eigen::Index greatest = here.rank;
   // What is rigid, or has no loops, is the same everywhere.
@@ -131,8 +103,7 @@ void look_nearby(Work& work, const State& state, const Spaces& here, Freedoms& f
     if (most < stayed) continue;
     moved = true;
     work.equations.evaluate_jacobian();
-    const Eigen::MatrixXd jacobian = work.equations.jacobian;
-    greatest = std::max(greatest, rank_of(Eigen::BDCSVD<Eigen::MatrixXd>(jacobian).singularValues(), jacobian));
+    greatest = std::max(greatest, rank_of(work.equations.jacobian).rank);
   }
   const auto columns = static_cast<std::int32_t>(mechanism.columns);
   freedoms.mobility_here = columns - static_cast<std::int32_t>(here.rank);
@@ -195,7 +166,7 @@ void find_axes(const Work& work, Freedoms& freedoms) {
 }
 
 /// Bodies that move in some combination of the motions while no other does.
-bool find_isolated(Work& work, const State& state, const Spaces& here, Freedoms& freedoms) {
+bool find_isolated(Work& work, const State& state, const NullSpaces& here, Freedoms& freedoms) {
   const Mechanism& mechanism = *work.mechanism;
   const Eigen::Index count = here.motions.cols();
   const auto bodies = static_cast<Eigen::Index>(mechanism.bodies.size());
@@ -246,18 +217,20 @@ std::vector<Pose> inlets(const Work& work) {
   return poses;
 }
 
-void find_indeterminate(const Work& work, const Spaces& here, Freedoms& freedoms) {
+void find_indeterminate(const Work& work, const NullSpaces& here, Freedoms& freedoms) {
   const Mechanism& mechanism = *work.mechanism;
   const LoadPaths paths(mechanism);
   const std::vector<Pose> frames = inlets(work);
   std::vector<Pose> outlets(mechanism.joints.size());
   paths.outlets(work.equations, outlets);
   std::vector<IndeterminateReaction> reactions(mechanism.joints.size());
+  std::vector<Wrench> wrenches(mechanism.joints.size());
   for (Eigen::Index k = 0; k < here.stresses.cols(); ++k) {
     // Multipliers of length one make moments of that size, and forces over the length.
-    std::vector<Wrench> wrenches(mechanism.joints.size());
+    std::fill(wrenches.begin(), wrenches.end(), Wrench{});
     paths.add(work.equations, here.stresses.col(k), outlets, wrenches);
     for (std::size_t j = 0; j < wrenches.size(); ++j) {
+      if (wrenches[j].moment.isZero(0.0) && wrenches[j].force.isZero(0.0)) continue;
       const Pose in_inlet = relative_pose(frames[j], Pose{Matrix3::Identity(), outlets[j].position});
       const Wrench wrench = transformed(in_inlet, wrenches[j]);
       for (int axis = 0; axis < 3; ++axis) {
@@ -279,7 +252,7 @@ void find_indeterminate(const Work& work, const Spaces& here, Freedoms& freedoms
 bool find_freedoms(Work& work, const State& state, Freedoms& freedoms) {
   freedoms = Freedoms{};
   if (!evaluate(work, state.q, state.time)) return false;
-  const Spaces here = spaces_of(work.equations.jacobian);
+  const NullSpaces here = null_spaces_of(work.equations.jacobian);
   find_kinds(work, state.q, freedoms);
   find_indeterminate(work, here, freedoms);
   if (!find_isolated(work, state, here, freedoms)) return false;

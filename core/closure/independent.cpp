@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include "closure/decompositions.hpp"
 
 namespace koppel {
 namespace {

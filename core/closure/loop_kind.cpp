@@ -5,8 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include "closure/decompositions.hpp"
 
 namespace koppel {
 namespace {
@@ -34,12 +33,12 @@ struct Directions {
 };
 
 Directions translations(std::span<const Column> motions) {
-  Eigen::Matrix3Xd directions(3, static_cast<Eigen::Index>(std::max<std::size_t>(motions.size(), 3)));
-  directions.setZero();
+  const auto count = static_cast<Eigen::Index>(std::max<std::size_t>(motions.size(), 3));
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(3, count);
   for (std::size_t i = 0; i < motions.size(); ++i) {
     directions.col(static_cast<Eigen::Index>(i)) = motions[i].linear.normalized();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(directions, Eigen::ComputeFullU);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(directions, Eigen::ComputeFullU);
   const auto rank = static_cast<int>((svd.singularValues().array() > tolerance).count());
   return {rank, rank < 3 ? Vector3(svd.matrixU().col(2)) : Vector3::Zero()};
 }

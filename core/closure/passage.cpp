@@ -4,9 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/QR>
-
 #include "closure/close.hpp"
+#include "closure/decompositions.hpp"
 #include "closure/newton.hpp"
 #include "closure/walk.hpp"
 #include "mechanism/coordinates.hpp"

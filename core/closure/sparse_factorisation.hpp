@@ -18,6 +18,9 @@ class SparseFactorisation final : public Factorisation {
   void solve(Eigen::VectorXd& b, Eigen::VectorXd& x) override;
   Condition condition() override;
 
+  /// After compute().
+  Elimination& elimination() { return *elimination_; }
+
  private:
   void take_out_motions(Eigen::VectorXd& x);
   void take_out_forces(Eigen::VectorXd& b);

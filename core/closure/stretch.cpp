@@ -5,9 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include "closure/decompositions.hpp"
 
 namespace koppel {
 namespace {

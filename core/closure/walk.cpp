@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/SVD>
+#include "closure/decompositions.hpp"
 
 namespace koppel {
 namespace {

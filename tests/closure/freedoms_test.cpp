@@ -11,6 +11,7 @@
 
 #include "closed.hpp"
 #include "closure/loop_kind.hpp"
+#include "row_of_four_bars.hpp"
 
 namespace koppel::test {
 namespace {
@@ -178,6 +179,27 @@ TEST(Freedoms, OfADoorOnTwoHingesAreNotIsolated) {
   EXPECT_EQ(scene.freedoms.mobility_here, 1);
   EXPECT_EQ(scene.freedoms.mobility_by_kind, 1);
   EXPECT_TRUE(scene.freedoms.isolated.empty());
+}
+
+// Few loops are judged by singular values, many by elimination: nothing else tells them apart.
+TEST(Freedoms, OfManyLoopsAreThoseOfFew) {
+  for (const int loops : {3, 100}) {
+    const Explained row(row_of_four_bars(loops));
+    const Freedoms& found = row.freedoms;
+    EXPECT_EQ(found.mobility_by_kind, 1) << loops;
+    EXPECT_EQ(found.mobility_here, 1) << loops;
+    EXPECT_EQ(found.mobility_nearby, 1) << loops;
+    EXPECT_EQ(found.redundant_here, 3u * static_cast<unsigned>(loops));
+    EXPECT_EQ(found.redundant_nearby, 3u * static_cast<unsigned>(loops));
+    EXPECT_FALSE(found.shaky) << loops;
+    EXPECT_TRUE(found.isolated.empty()) << loops;
+    // Of every joint the force along the axes and the moments across them.
+    EXPECT_EQ(found.indeterminate.size(), row.built->joints.size());
+    for (const IndeterminateReaction& reaction : found.indeterminate) {
+      EXPECT_EQ(reaction.force, (std::array{false, false, true})) << row.built->joints[reaction.joint.index()].name;
+      EXPECT_EQ(reaction.moment, (std::array{true, true, false})) << row.built->joints[reaction.joint.index()].name;
+    }
+  }
 }
 
 // The last link of an open chain moves alone, too, but that is what it is for.

@@ -135,6 +135,63 @@ void subtract_driven(Work& work, const Eigen::VectorXd& rates) {
   }
 }
 
+/// The tracker of the mechanism, made on first need; null if it has none.
+FlowTracker* tracker_of(Work& work) {
+  if (work.tracker_sought) return work.tracker.get();
+  work.tracker_sought = true;
+  for (const FlowChoice choice : {FlowChoice::first, FlowChoice::best}) {
+    if (auto tracker = FlowTracker::of(*work.mechanism, plan_flow(*work.mechanism, choice))) {
+      work.tracker = std::make_unique<FlowTracker>(std::move(*tracker));
+      break;
+    }
+  }
+  return work.tracker.get();
+}
+
+/// From a closed state to the time and the inputs that it has now, by closed forms, from work.q, which is to be near
+/// by; with rates and accelerations. Nothing: not here.
+std::optional<koppel_status> follow_flow(Work& work, State& state, Report& report) {
+  const Mechanism& mechanism = *work.mechanism;
+  FlowTracker* tracker = tracker_of(work);
+  if (tracker == nullptr) return std::nullopt;
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    work.q[mechanism.inputs[i].q] = state.input[k];
+    work.v[mechanism.inputs[i].v] = state.input_rate[k];
+    work.a[mechanism.inputs[i].v] = state.input_acceleration[k];
+  }
+  if (state.history.sides[0] == 0) tracker->find_sides(state.q, state.history.sides);
+  TrackedAccuracy accuracy;
+  if (!tracker->follow(work.q, work.v, work.a, state.history.sides, accuracy)) return std::nullopt;
+  if (!tracker->regular_rank) {
+    if (!factorise_at(work, work.q, state.time)) return KOPPEL_PLUGIN;
+    tracker->regular_rank = static_cast<std::uint32_t>(work.factorisation->rank());
+  }
+  remember(state);
+  state.history.rank = *tracker->regular_rank;
+  state.history.weakest = 0.0;  // not known
+  state.q = work.q;
+  state.v = work.v;
+  state.a = work.a;
+  state.stage = Stage::accelerations;
+  report.verdict = Verdict::closed;
+  report.solver = SolverUsed::flow;
+  report.rank = state.history.rank;
+  report.residual = accuracy.residual;
+  report.condition = accuracy.condition;
+  report.coordinate_error = accuracy.coordinate_error;
+  koppel_status status = KOPPEL_OK;
+  if (report.rank < mechanism.rows) status |= KOPPEL_REDUNDANT;
+  if (any_limit_exceeded(mechanism, state.q)) status |= KOPPEL_LIMIT_EXCEEDED;
+  return status;
+}
+
+/// Whether nothing is asked for but the closed position that continues the motion.
+bool is_plain(const CloseOptions& options) {
+  return options.method == Method::automatic && options.branch == Branch::stay && options.max_iterations == 0 &&
+         options.tolerance == 0.0;
+}
+
 /// Closes with the start values held that are fixed, so that the others give way.
 koppel_status close_with_start_held(const Work& work, State& state, const CloseOptions& options, Report& report) {
   const auto& held = work.mechanism->with_start_held;
@@ -157,7 +214,10 @@ bool is_closed(const Mechanism& mechanism, const State& state) {
   return state.stage != Stage::assigned && (!mechanism.explicit_time || state.time == state.history.time);
 }
 
-koppel_status close(Work& work, State& state, const CloseOptions& options, Report& report) {
+namespace {
+
+/// By Newton and what else there is where that does not do.
+koppel_status close_by_equations(Work& work, State& state, const CloseOptions& options, Report& report) {
   const Mechanism& mechanism = *work.mechanism;
   report = Report{};
   work.branch_rates.reset();
@@ -209,6 +269,18 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
   state.q = work.q;
   state.stage = Stage::closed;
   return closing.branch_changed() ? status | KOPPEL_BRANCH_CHANGED : status;
+}
+
+}  // namespace
+
+koppel_status close(Work& work, State& state, const CloseOptions& options, Report& report) {
+  if (is_plain(options) && state.stage != Stage::assigned && !inputs_taken(*work.mechanism, state)) {
+    report = Report{};
+    work.branch_rates.reset();
+    work.q = state.q;
+    if (const auto status = follow_flow(work, state, report)) return *status;
+  }
+  return close_by_equations(work, state, options, report);
 }
 
 koppel_status velocities(Work& work, State& state) {
@@ -263,60 +335,17 @@ koppel_status accelerations(Work& work, State& state) {
 
 namespace {
 
-/// The tracker of the mechanism, made on first need; null if it has none.
-FlowTracker* tracker_of(Work& work) {
-  if (work.tracker_sought) return work.tracker.get();
-  work.tracker_sought = true;
-  for (const FlowChoice choice : {FlowChoice::first, FlowChoice::best}) {
-    if (auto tracker = FlowTracker::of(*work.mechanism, plan_flow(*work.mechanism, choice))) {
-      work.tracker = std::make_unique<FlowTracker>(std::move(*tracker));
-      break;
-    }
-  }
-  return work.tracker.get();
-}
-
-/// From a closed state with accelerations to the inputs that it has now, by closed forms. Nothing: not here.
+/// From a closed state with accelerations to the time and the inputs that it has now, by closed forms. Nothing: not
+/// here.
 std::optional<koppel_status> track(Work& work, State& state, Report& report) {
-  const Mechanism& mechanism = *work.mechanism;
   const double h = state.time - state.history.time;
   if (state.stage != Stage::accelerations || h == 0.0) return std::nullopt;
-  FlowTracker* tracker = tracker_of(work);
-  if (tracker == nullptr) return std::nullopt;
   work.delta = h * state.v + (h * h / 2.0) * state.a;
   if (state.history.step != 0.0) {
     work.delta += (h * h * h / 6.0 / state.history.step) * (state.a - state.history.acceleration);
   }
-  integrate(mechanism, state.q, work.delta, work.q);
-  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    work.q[mechanism.inputs[i].q] = state.input[k];
-    work.v[mechanism.inputs[i].v] = state.input_rate[k];
-    work.a[mechanism.inputs[i].v] = state.input_acceleration[k];
-  }
-  if (state.history.sides[0] == 0) tracker->find_sides(state.q, state.history.sides);
-  TrackedAccuracy accuracy;
-  if (!tracker->follow(work.q, work.v, work.a, state.history.sides, accuracy)) return std::nullopt;
-  remember(state);
-  state.history.weakest = 0.0;  // not known
-  state.q = work.q;
-  if (!tracker->regular_rank) {
-    if (!factorise_at(work, state.q, state.time)) return KOPPEL_PLUGIN;
-    tracker->regular_rank = static_cast<std::uint32_t>(work.factorisation->rank());
-  }
-  state.history.rank = *tracker->regular_rank;
-  state.v = work.v;
-  state.a = work.a;
-  report.verdict = Verdict::closed;
-  report.solver = SolverUsed::flow;
-  report.rank = state.history.rank;
-  report.residual = accuracy.residual;
-  report.condition = accuracy.condition;
-  report.coordinate_error = accuracy.coordinate_error;
-  koppel_status status = KOPPEL_OK;
-  if (report.rank < mechanism.rows) status |= KOPPEL_REDUNDANT;
-  if (any_limit_exceeded(mechanism, state.q)) status |= KOPPEL_LIMIT_EXCEEDED;
-  return status;
+  integrate(*work.mechanism, state.q, work.delta, work.q);
+  return follow_flow(work, state, report);
 }
 
 }  // namespace
@@ -342,7 +371,7 @@ koppel_status move(Work& work, State& state, double time, Report& report, Branch
   }
   CloseOptions options;
   options.branch = branch;
-  const koppel_status closed = close(work, state, options, report);
+  const koppel_status closed = close_by_equations(work, state, options, report);
   if (closed < 0) return closed;
   if (work.branch_rates) {
     state.v = work.branch_rates->v;

@@ -21,12 +21,13 @@ struct CloseOptions {
 };
 
 /// Closes the loops with the inputs held at the state's values. A state that was closed before is followed from there,
-/// in smaller steps of the inputs if need be, and along its curve of closed positions where these are singular: past
-/// change points on the branch that is asked for (KOPPEL_CHANGE_POINT), up to a limit (KOPPEL_NOT_CLOSED, the report
-/// tells it). Another is assembled: by Newton if it is near, by Ceres from further away, by letting the inputs go,
-/// closing, and leading them back, and last by the solution flow, which finds a closed position if there is one, or
-/// that there is none (verdict unreachable), for mechanisms that it can say all solutions of. Status: as koppel_status;
-/// KOPPEL_NOT_CLOSED, KOPPEL_RETRY and KOPPEL_PLUGIN leave the state untouched.
+/// by closed forms in the order of the mechanism's flow if it has such and is not near a singular position (then with
+/// the rates and accelerations of its inputs), else in smaller steps of the inputs if need be, and along its curve of
+/// closed positions where these are singular: past change points on the branch that is asked for (KOPPEL_CHANGE_POINT),
+/// up to a limit (KOPPEL_NOT_CLOSED, the report tells it). Another is assembled: by Newton if it is near, by Ceres from
+/// further away, by letting the inputs go, closing, and leading them back, and last by the solution flow, which finds a
+/// closed position if there is one, or that there is none (verdict unreachable), for mechanisms that it can say all
+/// solutions of. Status: as koppel_status; KOPPEL_NOT_CLOSED, KOPPEL_RETRY and KOPPEL_PLUGIN leave the state untouched.
 koppel_status close(Work& work, State& state, const CloseOptions& options, Report& report);
 
 /// Whether the loops are closed at the state's position and time; its inputs may ask for another position by now.

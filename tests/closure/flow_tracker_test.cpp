@@ -68,34 +68,66 @@ class TrackedScene : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(FlowTracker, TrackedScene, testing::ValuesIn(tracked_scenes()),
                          [](const auto& test) { return std::string("scene_") + test.param; });
 
-/// Both are off by rounding times their condition numbers; rates by that once more for each differentiation.
+/// Whether a state is where Newton's method came to. Both are off by rounding times their condition numbers; rates by
+/// that once more for each differentiation.
+void expect_there(const Tracked& by_newton, const State& by_flow, double condition_of_flow) {
+  const Mechanism& mechanism = *by_newton.built;
+  const State& there = by_newton.state;
+  Eigen::VectorXd delta(mechanism.nv);
+  difference(mechanism, there.q, by_flow.q, delta);
+  const double condition = std::max(by_newton.report.condition, condition_of_flow);
+  const double allowed = 64.0 * eps * condition * static_cast<double>(mechanism.nv);
+  const double speed = 1.0 + there.v.lpNorm<Eigen::Infinity>();
+  const double pull = speed * speed + there.a.lpNorm<Eigen::Infinity>();
+  EXPECT_LE(delta.lpNorm<Eigen::Infinity>(), allowed);
+  EXPECT_LE((by_flow.v - there.v).lpNorm<Eigen::Infinity>(), allowed * condition * speed);
+  EXPECT_LE((by_flow.a - there.a).lpNorm<Eigen::Infinity>(), allowed * condition * condition * pull);
+}
+
+constexpr int steps = 360;
+
 TEST_P(TrackedScene, MovesAsByNewtonsMethod) {
   Tracked tracked(shipped(GetParam()));
   ASSERT_TRUE(tracked.tracker);
-  const int steps = 360;
   int followed = 0;
   for (int i = 1; i <= steps; ++i) {
     const double time = tracked.built->duration * i / steps;
+    SCOPED_TRACE(time);
     State by_flow = tracked.state;
     const bool fine = tracked.follow(time, by_flow);
-    ASSERT_GE(tracked.move_by_newton(time), 0) << "at " << time;
+    ASSERT_GE(tracked.move_by_newton(time), 0);
     if (!fine) continue;
     ++followed;
-    const State& by_newton = tracked.state;
-    Eigen::VectorXd delta(tracked.built->nv);
-    difference(*tracked.built, by_newton.q, by_flow.q, delta);
-    const double condition = std::max(tracked.report.condition, tracked.accuracy.condition);
-    const double allowed = 64.0 * eps * condition * static_cast<double>(tracked.built->nv);
-    const double speed = 1.0 + by_newton.v.lpNorm<Eigen::Infinity>();
-    const double pull = speed * speed + by_newton.a.lpNorm<Eigen::Infinity>();
-    EXPECT_LE(delta.lpNorm<Eigen::Infinity>(), allowed) << "at " << time;
-    EXPECT_LE((by_flow.v - by_newton.v).lpNorm<Eigen::Infinity>(), allowed * condition * speed) << "at " << time;
-    EXPECT_LE((by_flow.a - by_newton.a).lpNorm<Eigen::Infinity>(), allowed * condition * condition * pull)
-        << "at " << time;
+    expect_there(tracked, by_flow, tracked.accuracy.condition);
     EXPECT_LE(tracked.accuracy.residual, 1e-14);
     if (::testing::Test::HasFailure()) return;
   }
   EXPECT_EQ(followed, steps) << "nothing here is near a singular position";
+}
+
+/// Who sets inputs and closes gets the same, rates and accelerations included.
+TEST_P(TrackedScene, ClosesForNewInputsAsByNewtonsMethod) {
+  Tracked tracked(shipped(GetParam()));
+  Closed closed(shipped(GetParam()));
+  closed.state.input = tracked.state.input;
+  ASSERT_GE(closed.close(), 0);
+  int followed = 0;
+  for (int i = 1; i <= steps; ++i) {
+    SCOPED_TRACE(i);
+    ASSERT_GE(tracked.move_by_newton(tracked.built->duration * i / steps), 0);
+    closed.state.input = tracked.state.input;
+    closed.state.input_rate = tracked.state.input_rate;
+    closed.state.input_acceleration = tracked.state.input_acceleration;
+    ASSERT_GE(closed.close(), 0);
+    if (closed.report.solver == SolverUsed::flow) ++followed;
+    ASSERT_EQ(velocities(closed.work, closed.state), KOPPEL_OK);
+    ASSERT_EQ(accelerations(closed.work, closed.state), KOPPEL_OK);
+    expect_there(tracked, closed.state, closed.report.condition);
+    EXPECT_LE(closed.residual(), 1e-13) << "to which the tracker closes";
+    if (::testing::Test::HasFailure()) return;
+  }
+  // Where two solutions come near each other, the last position alone may not tell them apart.
+  EXPECT_GE(followed, steps * 9 / 10);
 }
 
 /// What it says of its error is no less than what it is off by, and not much more.

@@ -38,7 +38,7 @@ void add_simulations(Bench& bench);
 void add_closures(Bench& bench);
 /// chains of growing length: time, error and memory;
 void add_scaling(Bench& bench);
-/// hard cases, each with what should come out; true: all did;
+/// hard cases, each with what should come out (true: all did);
 bool add_cases(Bench& bench);
 /// and where the time goes in the run of each scene. At once: nothing is left to the rounds.
 void add_profiles(Bench& bench);

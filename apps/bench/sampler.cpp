@@ -13,6 +13,7 @@
 
 #include <dlfcn.h>
 #include <execinfo.h>
+#include <unistd.h>
 
 #include "bench/rounds.hpp"
 
@@ -62,7 +63,8 @@ class Timer {
     action.sa_flags = SA_RESTART;
     sigaction(SIGPROF, &action, &before_);
     sigevent event = {};
-    event.sigev_notify = SIGEV_SIGNAL;
+    event.sigev_notify = SIGEV_THREAD_ID;  // no other thread has anything to tell
+    event._sigev_un._tid = gettid();
     event.sigev_signo = SIGPROF;
     runs_ = timer_create(CLOCK_MONOTONIC, &event, &timer_) == 0;
     const itimerspec often = {{0, period}, {0, period}};

@@ -1,5 +1,6 @@
 #include "base/log.hpp"
 
+#include <spdlog/logger.h>
 #include <spdlog/sinks/null_sink.h>
 
 namespace koppel {

@@ -3,7 +3,10 @@
 
 #include <memory>
 
-#include <spdlog/logger.h>
+// Who logs includes <spdlog/logger.h>, which takes a compiler longer than most files of the engine.
+namespace spdlog {
+class logger;
+}
 
 namespace koppel {
 

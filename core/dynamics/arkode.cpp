@@ -18,8 +18,8 @@ void Arkode::create() {
       ARKStepSetJacFn(memory_, jacobian) < 0) {
     throw std::bad_alloc();
   }
-  ARKStepSetMaxErrTestFails(memory_, 40);
-  ARKStepSetMaxConvFails(memory_, 40);
+  ARKStepSetMaxErrTestFails(memory_, most_failures);
+  ARKStepSetMaxConvFails(memory_, most_failures);
 }
 
 bool Arkode::begin(double t, const Eigen::VectorXd& y, double first_step) {

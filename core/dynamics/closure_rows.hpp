@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "closure/equations.hpp"
 #include "closure/elimination.hpp"
+#include "closure/equations.hpp"
 
 namespace koppel {
 

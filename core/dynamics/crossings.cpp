@@ -51,12 +51,14 @@ bool Crossings::stand(Integrator& method, double t) {
 bool Crossings::find(Integrator& method, double from, double until, std::optional<Crossing>& found) {
   found.reset();
   const std::size_t count = motion_.mechanism().watches.size();
+  if (count == 0) return true;
+  if (!stand(method, until)) return false;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!stand(method, until)) return false;
     if (!is_crossed(i)) continue;
     Crossing crossing{static_cast<std::uint32_t>(i), until, value(i) > 0.0};
     if (!locate(method, i, from, crossing.time)) return false;
     if (!found || crossing.time < found->time) found = crossing;
+    if (!stand(method, until)) return false;
   }
   if (found && !stand(method, found->time)) return false;
   // Others that are crossed at the same time are found from there on.
@@ -66,8 +68,8 @@ bool Crossings::find(Integrator& method, double from, double until, std::optiona
   return true;
 }
 
-/// By the secant's root, with the weight of an end that stays halved (Illinois), in turns with halving. The motion
-/// stands at `time`, where it is crossed.
+/// By the secant's root, with the weight of an end that stays halved (Illinois), in turns with halving. Before, the
+/// motion stands at `time`, where it is crossed.
 bool Crossings::locate(Integrator& method, std::size_t watch, double from, double& time) {
   const double side = sides_[static_cast<Eigen::Index>(watch)];
   double low = from, high = time, at_high = value(watch);

@@ -15,8 +15,8 @@ void Cvode::create() {
       CVodeSetLinearSolver(memory_, vectors_->solver, vectors_->matrix) < 0 || CVodeSetJacFn(memory_, jacobian) < 0) {
     throw std::bad_alloc();
   }
-  CVodeSetMaxErrTestFails(memory_, 40);
-  CVodeSetMaxConvFails(memory_, 40);
+  CVodeSetMaxErrTestFails(memory_, most_failures);
+  CVodeSetMaxConvFails(memory_, most_failures);
 }
 
 bool Cvode::start(double t, const Eigen::VectorXd& y) {

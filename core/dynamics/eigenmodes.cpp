@@ -6,8 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "closure/decompositions.hpp"
 
 namespace koppel {
 namespace {

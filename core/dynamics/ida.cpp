@@ -19,8 +19,8 @@ void Ida::create() {
       IDASetJacFn(memory_, jacobian) < 0) {
     throw std::bad_alloc();
   }
-  IDASetMaxErrTestFails(memory_, 40);
-  IDASetMaxConvFails(memory_, 40);
+  IDASetMaxErrTestFails(memory_, most_failures);
+  IDASetMaxConvFails(memory_, most_failures);
 }
 
 int Ida::residual(realtype t, N_Vector y, N_Vector y_rate, N_Vector missing, void* of) {

@@ -10,7 +10,6 @@ struct PlainTwist {
   Plain3 angular, linear;
 
   PlainTwist operator+(const PlainTwist& o) const { return {angular + o.angular, linear + o.linear}; }
-  PlainTwist operator-(const PlainTwist& o) const { return {angular - o.angular, linear - o.linear}; }
   PlainTwist& operator+=(const PlainTwist& o) {
     angular += o.angular, linear += o.linear;
     return *this;

@@ -11,10 +11,10 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include "closure/elimination.hpp"
 #include "closure/equations.hpp"
 #include "closure/load_paths.hpp"
 #include "dynamics/closure_rows.hpp"
-#include "closure/elimination.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/inertias.hpp"
 #include "mechanism/loads.hpp"

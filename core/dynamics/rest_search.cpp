@@ -5,8 +5,8 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+
+#include "closure/decompositions.hpp"
 
 namespace koppel {
 namespace {

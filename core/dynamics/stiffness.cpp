@@ -4,8 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "closure/decompositions.hpp"
 
 namespace koppel {
 namespace {

@@ -65,6 +65,9 @@ struct SundialsVectors {
   }
 };
 
+/// Tries of one step that may fail, by its error or by Newton's method.
+inline constexpr int most_failures = 40;
+
 inline void say_nothing(int, const char*, const char*, char*, void*) {}
 
 /// Weights by tolerance and scales, of the first components; none of the others is controlled. SUNDIALS takes the mean

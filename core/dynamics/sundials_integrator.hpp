@@ -40,7 +40,7 @@ class SundialsIntegrator : public Integrator {
 
  private:
   StepPolynomial polynomial_;
-  int creeping_ = 0;             ///< steps in a row that were hardly any
+  int creeping_ = 0;             ///< steps in a row that hardly went on
   Eigen::VectorXd raw_, moved_;  ///< as SUNDIALS has it; y
 };
 

@@ -160,10 +160,6 @@ void TreeFactors::other_half_solve(double* x) const {
   inwards_out(x);
 }
 
-void TreeFactors::solve(Eigen::Ref<Eigen::MatrixXd> columns) const {
-  for (Eigen::Index i = 0; i < columns.cols(); ++i) solve(columns.col(i).data());
-}
-
 double TreeFactors::log_determinant() const {
   double sum = 0.0;
   for (std::uint32_t p = 0; p < matrix_.layout().rates(); ++p) sum += std::log(pivot(p));

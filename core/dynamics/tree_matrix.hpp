@@ -70,8 +70,6 @@ class TreeFactors {
   void other_half_solve(double* x) const;
   /// X = M^-1 X, nv rows of `count` numbers each, row by row.
   void solve(double* x, std::uint32_t count) const;
-  /// Column by column.
-  void solve(Eigen::Ref<Eigen::MatrixXd> columns) const;
   /// The logarithm of the determinant.
   double log_determinant() const;
 

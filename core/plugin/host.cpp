@@ -1,5 +1,7 @@
 #include "plugin/host.hpp"
 
+#include <spdlog/logger.h>
+
 namespace koppel {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <dlfcn.h>
+#include <spdlog/logger.h>
 
 #include "plugin/copy.hpp"
 #include "plugin/host.hpp"

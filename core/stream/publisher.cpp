@@ -9,6 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include <spdlog/logger.h>
+
 #include "stream/encoder.hpp"
 #include "stream/log_sink.hpp"
 #include "stream/network_sink.hpp"

@@ -9,6 +9,7 @@
 
 #include "closure/close.hpp"
 #include "dynamics/simulation.hpp"
+#include "folders.hpp"
 #include "peer_table.hpp"
 #include "peers/trees.hpp"
 #include "scene/scene.hpp"
@@ -27,7 +28,7 @@ class Loop {
  public:
   explicit Loop(const std::string& name) : registry_(standard_types()) {
     Diagnostics findings;
-    const auto scene = read_scene_file(*registry_, KOPPEL_SCENES "/dynamics/" + name + ".toml", findings);
+    const auto scene = read_scene_file(*registry_, test::scenes_folder() + "/dynamics/" + name + ".toml", findings);
     auto mechanism = scene ? compile(*scene, findings) : tl::make_unexpected(scene.error());
     auto masses = mechanism ? inertias(**mechanism) : tl::make_unexpected(mechanism.error());
     if (!masses) stop(masses.error());

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include "folders.hpp"
 #include "scene/scene.hpp"
 #include "standard_types.hpp"
 
@@ -51,7 +52,7 @@ Result<Run> load(const std::string& name) {
   Run run;
   run.registry = standard_types();
   Diagnostics findings;
-  KOPPEL_TRY(const Scene scene, read_scene_file(*run.registry, KOPPEL_SCENES "/" + name + ".toml", findings));
+  KOPPEL_TRY(const Scene scene, read_scene_file(*run.registry, test::scenes_folder() + "/" + name + ".toml", findings));
   return moved(std::move(run), scene, name, findings);
 }
 

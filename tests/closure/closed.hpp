@@ -12,6 +12,7 @@
 #include "../mechanism/built.hpp"
 #include "../spatial/directions.hpp"
 #include "closure/close.hpp"
+#include "folders.hpp"
 
 namespace koppel::test {
 
@@ -19,7 +20,7 @@ using Replacements = std::vector<std::pair<std::string, std::string>>;
 
 /// The text of a shipped scene, changed here and there.
 inline std::string shipped(const std::string& name, const Replacements& replacements = {}) {
-  std::ifstream file(std::filesystem::path(KOPPEL_SCENES) / (name + ".toml"));
+  std::ifstream file(std::filesystem::path(scenes_folder()) / (name + ".toml"));
   std::ostringstream text;
   text << file.rdbuf();
   const std::size_t start = text.str().find("schema");

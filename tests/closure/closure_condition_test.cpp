@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
+#include "closure/decompositions.hpp"
 #include "closure/loop_cut.hpp"
 #include "random_loop.hpp"
 #include "spatial/dual.hpp"

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <numbers>
 
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
+#include "closure/decompositions.hpp"
 #include "closure/walk.hpp"
 #include "four_bar.hpp"
 

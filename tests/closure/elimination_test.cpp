@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
+
+#include "closure/decompositions.hpp"
 
 namespace koppel {
 namespace {

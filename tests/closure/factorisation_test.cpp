@@ -1,11 +1,10 @@
 // Least-squares solutions of least norm and condition numbers, against Eigen's decompositions.
 #include "closure/factorisation.hpp"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
 #include "../spatial/directions.hpp"
+#include "closure/decompositions.hpp"
 #include "closure/dense_factorisation.hpp"
 #include "closure/orientation.hpp"
 #include "closure/sparse_factorisation.hpp"

@@ -23,6 +23,7 @@
 #include "../mechanism/built.hpp"
 #include "../scenes/rewriting.hpp"
 #include "closure/modes.hpp"
+#include "folders.hpp"
 
 namespace koppel::test {
 namespace {
@@ -35,7 +36,7 @@ using Changes = std::vector<std::pair<std::string, std::string>>;
 
 /// The text of a shipped scene, changed here and there.
 std::string scene(const std::string& name, const Changes& changes = {}) {
-  std::ifstream file(std::filesystem::path(KOPPEL_SCENES) / (name + ".toml"));
+  std::ifstream file(std::filesystem::path(scenes_folder()) / (name + ".toml"));
   std::ostringstream text;
   text << file.rdbuf();
   std::string result = text.str().substr(text.str().find("schema"));
@@ -61,7 +62,7 @@ std::string driven(const std::string& name, const std::map<std::string, std::str
 const std::vector<std::string>& scenes() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> found;
-    for (const auto& file : std::filesystem::directory_iterator(KOPPEL_SCENES)) {
+    for (const auto& file : std::filesystem::directory_iterator(scenes_folder())) {
       if (file.path().extension() == ".toml") found.push_back(file.path().stem().string());
     }
     std::sort(found.begin(), found.end());

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "closure/loop_cut.hpp"
+#include "folders.hpp"
 #include "random_loop.hpp"
 
 namespace koppel::test {
@@ -65,7 +66,7 @@ Loops loops_of(const Mechanism& mechanism, const LoopChoice& choice = {}) {
 /// All shipped scenes but the one whose joints have a pitch.
 std::vector<std::string> scenes() {
   std::vector<std::string> names;
-  for (const auto& file : std::filesystem::directory_iterator(KOPPEL_SCENES)) {
+  for (const auto& file : std::filesystem::directory_iterator(scenes_folder())) {
     if (file.path().extension() == ".toml" && file.path().stem() != "7h") names.push_back(file.path().stem().string());
   }
   std::sort(names.begin(), names.end());

@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/QR>
-
+#include "closure/decompositions.hpp"
 #include "random_mechanism.hpp"
 
 namespace koppel::test {

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
+#include "closure/decompositions.hpp"
 #include "closure/modes.hpp"
 #include "random_mechanism_maker.hpp"
 #include "random_mechanism_positions.hpp"

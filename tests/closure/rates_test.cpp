@@ -1,8 +1,8 @@
 // Velocities and accelerations of closed mechanisms: derivatives of positions; what they are where freedoms are left
 // over, and that they are refused where the drives ask for the impossible.
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "closure/decompositions.hpp"
 #include "passage.hpp"
 #include "wave.hpp"
 

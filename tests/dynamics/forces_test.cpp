@@ -6,6 +6,7 @@
 
 #include "../mechanism/tree.hpp"
 #include "../plugin/curve.hpp"
+#include "folders.hpp"
 #include "spatial/quaternion.hpp"
 #include "spatial/rotation.hpp"
 
@@ -250,7 +251,7 @@ TEST(StartRates, AreThoseOfTheSceneButOfDrivenCoordinates) {
 
 /// A force of a plugin that is loaded without complaint.
 std::string bad_force(const std::string& file) {
-  return std::string(floating) + "[[force]]\nname = 'odd'\ntype = 'bad.force'\nplugin = '" + KOPPEL_TEST_PLUGINS +
+  return std::string(floating) + "[[force]]\nname = 'odd'\ntype = 'bad.force'\nplugin = '" + test_plugins_folder() +
          "/bad/" + file + ".so'\non = 'hand'\nof = 'b.angle'\n";
 }
 
@@ -277,7 +278,7 @@ TEST_P(BadForce, IsToldByName) {
     EXPECT_EQ(fine, GetParam().where.find(what) == std::string::npos) << what;
     if (fine) return;
     EXPECT_EQ(acting.forces.culprit(),
-              "force odd of type bad.force (" + std::string(KOPPEL_TEST_PLUGINS) + "/bad/" + GetParam().file + ".so)");
+              "force odd of type bad.force (" + test_plugins_folder() + "/bad/" + GetParam().file + ".so)");
   };
   double number = 0.0, other = 0.0;
   const double *q = acting.q.data(), *v = acting.v.data(), *states = acting.states.data();

@@ -262,6 +262,23 @@ TEST(Integrators, StopWhereTheSolutionEnds) {
 }
 
 /// x' = -k (x - cos t): after 1/k it follows the cosine, and steps of 3/k are all that explicit methods can take.
+/// On both sides of zero the way leads back to it: steps across are no longer than the tolerance, without an end.
+TEST(Integrators, StepsThatHardlyGoOnEnd) {
+  for (const IntegratorKind kind : {IntegratorKind::cvode, IntegratorKind::arkode}) {
+    SCOPED_TRACE(integrators()[static_cast<std::size_t>(kind)].name);
+    Problem problem{1, [](double, const Eigen::VectorXd& y, Eigen::VectorXd& rate) {
+                      rate[0] = y[0] > 0.0 ? -1.0 : 1.0;
+                      return true;
+                    }};
+    const auto method = make_integrator(kind, problem, 1e-13, 0.0);
+    ASSERT_TRUE(method->start(0.0, Eigen::VectorXd::Constant(1, 0.1)));
+    StepStatus status = StepStatus::done;
+    while (status == StepStatus::done && method->statistics().steps < 1000000) status = method->step(1.0);
+    EXPECT_EQ(status, StepStatus::too_small);
+    EXPECT_NEAR(method->time(), 0.1, 1e-6);
+  }
+}
+
 TEST(Integrators, StiffnessIsSeenAndCvodeMindsItNot) {
   constexpr double k = 1e5;
   const auto run = [](IntegratorKind kind) {

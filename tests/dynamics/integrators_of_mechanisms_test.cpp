@@ -43,6 +43,17 @@ TEST(IntegratorsOfMechanisms, SingularPositionsAreCrossedAtAnyTolerance) {
   }
 }
 
+/// Of the platform's turn some rates are independent, the others are not, and long steps turn it far from its chart's
+/// base. A hundred units of rounding of coordinates of the size of the mechanism.
+TEST(IntegratorsOfMechanisms, LoopsCloseToRoundingHoweverFarAChartIsTurned) {
+  for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    SCOPED_TRACE(tolerance);
+    Simulated run(scene("stewart_free"), by(IntegratorKind::dop853, tolerance, 0.0, 1.0));
+    run.to(1.0);
+    EXPECT_LT(run.simulation->summary().position_drift, 100 * eps);
+  }
+}
+
 TEST(IntegratorsOfMechanisms, FixedStepsKeepTheirOrders) {
   // Of the rate: it starts upright, without acceleration, so that positions of the semi-implicit method are those of
   // leap frog, and of order 2.

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "folders.hpp"
 #include "four_bar.hpp"
 #include "resting.hpp"
 
@@ -20,7 +21,7 @@ constexpr double pi = std::numbers::pi;
 using Complex = std::complex<double>;
 
 std::string scene(const std::string& name) {
-  std::ifstream file(std::string(KOPPEL_SCENES) + "/dynamics/" + name + ".toml");
+  std::ifstream file(scenes_folder() + "/dynamics/" + name + ".toml");
   EXPECT_TRUE(file) << name;
   std::stringstream text;
   text << file.rdbuf();

@@ -14,6 +14,7 @@
 #include "../mechanism/built.hpp"
 #include "closure/close.hpp"
 #include "dynamics/simulation.hpp"
+#include "folders.hpp"
 
 namespace koppel::test {
 
@@ -21,7 +22,7 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr double pi = std::numbers::pi;
 
 inline std::string scene(const std::string& name) {
-  std::ifstream file(std::string(KOPPEL_SCENES) + "/dynamics/" + name + ".toml");
+  std::ifstream file(scenes_folder() + "/dynamics/" + name + ".toml");
   EXPECT_TRUE(file) << name;
   std::stringstream text;
   text << file.rdbuf();

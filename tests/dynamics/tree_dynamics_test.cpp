@@ -1,9 +1,9 @@
 // Dynamics of random trees: inverse dynamics, mass matrix, forward dynamics, energy and momentum belong together.
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "../plugin/curve.hpp"
+#include "closure/decompositions.hpp"
 #include "moving_tree.hpp"
 #include "spatial_reference.hpp"
 

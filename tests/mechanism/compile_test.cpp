@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "built.hpp"
+#include "folders.hpp"
 
 namespace koppel::test {
 namespace {
@@ -127,7 +128,7 @@ TEST(Compile, CountsMobilityAsGrueblerDoes) {
     Registry registry(with_strangers());
     Diagnostics diagnostics;
     const auto scene = read_scene_file(
-        registry, std::filesystem::path(KOPPEL_SCENES) / (std::string(known.scene) + ".toml"), diagnostics);
+        registry, std::filesystem::path(scenes_folder()) / (std::string(known.scene) + ".toml"), diagnostics);
     ASSERT_TRUE(scene) << diagnostics.render();
     const auto mechanism = compile(*scene, diagnostics);
     ASSERT_TRUE(mechanism);

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "fixtures.hpp"
+#include "folders.hpp"
 #include "plugin/motion.hpp"
 
 namespace koppel::test {
@@ -16,7 +17,7 @@ struct Fault {
 void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.file; }
 
 std::filesystem::path path_of(const std::string& file) {
-  return std::filesystem::path(KOPPEL_TEST_PLUGINS) / "bad" / (file + ".so");
+  return std::filesystem::path(test_plugins_folder()) / "bad" / (file + ".so");
 }
 
 std::string test_name(const testing::TestParamInfo<Fault>& info) { return info.param.file; }
@@ -188,7 +189,7 @@ TEST(BadPlugins, DifferFromOneThatIsFine) {
 
 TEST(BadPlugins, AFolderIsNoPlugin) {
   Registry registry(linked_in());
-  const auto loaded = registry.load(KOPPEL_TEST_PLUGINS);
+  const auto loaded = registry.load(test_plugins_folder());
   ASSERT_FALSE(loaded);
   EXPECT_EQ(loaded.error().code, Code::plugin_unloadable);
 }

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "folders.hpp"
 #include "koppel_builtin_plugins.h"
 #include "plugin/registry.hpp"
 
@@ -26,14 +27,14 @@ inline RegistryOptions linked_in() {
 /// The same ones as shared objects.
 inline RegistryOptions as_shared_objects() {
   RegistryOptions options;
-  options.standard_plugins = KOPPEL_STANDARD_PLUGINS;
+  options.standard_plugins = standard_plugins_folder();
   return options;
 }
 
 /// The linked-in ones, and strangers on the plugin path.
 inline RegistryOptions with_strangers() {
   RegistryOptions options = linked_in();
-  options.plugin_path = {KOPPEL_TEST_PLUGINS};
+  options.plugin_path = {test_plugins_folder()};
   return options;
 }
 

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "fixtures.hpp"
+#include "folders.hpp"
 
 namespace koppel::test {
 namespace {
@@ -25,7 +26,7 @@ class Lookup : public testing::Test {
     fs::current_path(before);
     fs::remove_all(folder);
   }
-  void put(const fs::path& where) const { fs::copy_file(fs::path(KOPPEL_TEST_PLUGINS) / "acme.so", folder / where); }
+  void put(const fs::path& where) const { fs::copy_file(fs::path(test_plugins_folder()) / "acme.so", folder / where); }
 
   static Result<const JointType*> hinge(Registry& registry, const std::string& file, const fs::path& scene_folder) {
     return registry.joint("acme.hinge", {file, scene_folder});
@@ -148,7 +149,7 @@ TEST(Names, OfStandardTypesComeFromNoFile) {
 
 TEST(Names, OfLinkedInPluginsAreProposed) {
   Registry registry(linked_in());
-  ASSERT_TRUE(registry.load(std::string(KOPPEL_TEST_PLUGINS) + "/acme.so"));
+  ASSERT_TRUE(registry.load(test_plugins_folder() + "/acme.so"));
   const auto type = registry.joint("acme.hnge", {});
   ASSERT_FALSE(type);
   EXPECT_EQ(type.error().code, Code::plugin_without_type);

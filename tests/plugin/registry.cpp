@@ -3,9 +3,11 @@
 #include <cstring>
 #include <memory>
 
+#include <spdlog/logger.h>
 #include <spdlog/sinks/ostream_sink.h>
 
 #include "fixtures.hpp"
+#include "folders.hpp"
 
 namespace koppel::test {
 namespace {
@@ -70,7 +72,7 @@ TEST(StandardTypes, AreTheSameAsSharedObjects) {
       const Type *here = find(built_in, kind, name), *there = find(loaded, kind, name);
       expect_same_schema(*here, *there);
       EXPECT_EQ(here->origin, "built in");
-      EXPECT_EQ(there->origin, std::string(KOPPEL_STANDARD_PLUGINS) + "/" + name + ".so");
+      EXPECT_EQ(there->origin, standard_plugins_folder() + "/" + name + ".so");
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include <toml++/toml.h>
 
+#include "folders.hpp"
 #include "model.hpp"
 
 namespace koppel::test {
@@ -126,7 +127,7 @@ std::string Golden::text(const std::string& scene) const {
   const auto variant =
       std::find_if(variants.begin(), variants.end(), [&](const Variant& entry) { return entry.name == scene; });
   if (variant == variants.end()) {
-    const std::string beside = KOPPEL_GOLDEN "/" + scene + ".toml";
+    const std::string beside = tests_folder() + "/scenes/" + scene + ".toml";
     return std::filesystem::exists(beside) ? read_text(beside) : shipped_scene(scene);
   }
   std::string result = text(variant->of);
@@ -139,7 +140,7 @@ std::string Golden::text(const std::string& scene) const {
 Golden read_golden() {
   Golden golden;
   try {
-    const toml::table root = toml::parse_file(KOPPEL_GOLDEN "/golden.toml");
+    const toml::table root = toml::parse_file(tests_folder() + "/scenes/golden.toml");
     for (const toml::node& row : rows(root, "scene")) golden.scenes.push_back(read_facts(*row.as_array()));
     for (const toml::node& entry : rows(root, "variant")) golden.variants.push_back(read_variant(*entry.as_table()));
     for (const toml::node& entry : rows(root, "case")) {

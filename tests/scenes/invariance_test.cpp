@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "folders.hpp"
 #include "model.hpp"
 #include "rewriting.hpp"
 
@@ -149,13 +150,13 @@ TEST_P(SameMotion, WithAllOfThisTogether) {
 }
 
 TEST_P(SameMotion, ToTheBitWithStandardPluginsAsSharedObjects) {
-  expect_same_bits(Model(text, {nullptr, KOPPEL_STANDARD_PLUGINS}));
+  expect_same_bits(Model(text, {{}, standard_plugins_folder()}));
 }
 
 TEST_P(SameMotion, ToTheBitWithAStrangersJoints) {
   Rewriting rewriting(text);
   rewriting.change_vendor("acme");
-  expect_same_bits(Model(rewriting.text(), {KOPPEL_TEST_PLUGINS, nullptr}));
+  expect_same_bits(Model(rewriting.text(), {test_plugins_folder(), {}}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SameMotion, testing::ValuesIn(shipped_scenes()),

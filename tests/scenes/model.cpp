@@ -8,6 +8,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "folders.hpp"
+
 namespace koppel::test {
 namespace {
 
@@ -26,8 +28,8 @@ void demand(const char* what, koppel_status status) {
 
 app::Engine make_engine(const Plugins& plugins) {
   auto options = app::sized<koppel_engine_options>();
-  options.plugin_path = plugins.path;
-  options.standard_plugins = plugins.standard;
+  if (!plugins.path.empty()) options.plugin_path = plugins.path.c_str();
+  if (!plugins.standard.empty()) options.standard_plugins = plugins.standard.c_str();
   koppel_engine* engine = nullptr;
   demand("engine", [&](koppel_error* error) {
     return koppel_engine_create(KOPPEL_ABI_MAJOR, KOPPEL_ABI_MINOR, &options, &engine, error);
@@ -180,7 +182,7 @@ bool same_bits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 
 std::vector<std::string> shipped_scenes() {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(KOPPEL_SCENES)) {
+  for (const auto& entry : std::filesystem::directory_iterator(scenes_folder())) {
     if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
@@ -193,7 +195,7 @@ std::string read_text(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::string shipped_scene(const std::string& name) { return read_text(KOPPEL_SCENES "/" + name + ".toml"); }
+std::string shipped_scene(const std::string& name) { return read_text(scenes_folder() + "/" + name + ".toml"); }
 
 std::string test_name(std::string_view text) {
   std::string name;

@@ -12,10 +12,10 @@
 
 namespace koppel::test {
 
-/// Where an engine finds its plugins; null: as koppel_engine_options has it.
+/// Where an engine finds its plugins; empty: as koppel_engine_options has it.
 struct Plugins {
-  const char* path = nullptr;
-  const char* standard = nullptr;
+  std::string path;
+  std::string standard;
 };
 
 /// A compiled scene.

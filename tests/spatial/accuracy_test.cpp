@@ -10,6 +10,7 @@
 
 #include "directions.hpp"
 #include "every_coordinates.hpp"
+#include "folders.hpp"
 #include "spatial/pose_exponential.hpp"
 #include "spatial/twist.hpp"
 #include "special_rotations.hpp"
@@ -311,6 +312,6 @@ int main(int count, char** arguments) {
   const std::string text =
       "Worst errors of core/spatial in units of rounding, 2^-53 = 1.1e-16\n" + koppel::test::report();
   std::cout << text;
-  std::ofstream(KOPPEL_REPORT) << text;
+  std::ofstream(koppel::test::build_folder() + "/spatial_accuracy.md") << text;
   return failed;
 }

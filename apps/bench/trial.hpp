@@ -24,6 +24,7 @@ struct Method {
 inline constexpr Method dormand_prince = {"dormand-prince", "dormand_prince", "minimal", false};
 inline constexpr Method dop853 = {"dop853", "dop853", "minimal", false};
 inline constexpr Method classical = {"classical", "classical", "minimal", true};
+inline constexpr Method semi_implicit = {"semi-implicit", "semi_implicit", "minimal", true};
 /// Loops as constraints, with multipliers.
 inline constexpr Method ggl = {"ggl", "ida", "ggl", false};
 inline constexpr Method index3 = {"index3", "generalised_alpha", "index3", true};

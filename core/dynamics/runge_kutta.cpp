@@ -146,11 +146,13 @@ StepStatus RungeKutta::step(double limit) {
     const double rest = limit - time_;
     const bool last = rest <= h * (1.0 + 1e-9);
     const double tried = last ? rest : (!is_fixed() && rest < 2.0 * h ? rest / 2.0 : h);
+    const double end = last ? limit : time_ + tried;
+    const double length = end - time_;  // what is tried, rounded: steps add up to the time that has passed
     if (!last && tried < least) return StepStatus::too_small;
     rounding_ = rounding_at_end_;
-    const bool defined = evaluate_stages(table_->stages.subspan(1), 1, tried);
-    const double e = defined && !is_fixed() ? error(tried) : 0.0;
-    const bool blurred = defined && !is_fixed() && blur(tried) > tolerance_;
+    const bool defined = evaluate_stages(table_->stages.subspan(1), 1, length);
+    const double e = defined && !is_fixed() ? error(length) : 0.0;
+    const bool blurred = defined && !is_fixed() && blur(length) > tolerance_;
     if (e > 1.0 && lengths < most_lengths && (blurred || lengths > 0)) {
       // Other lengths have their stages elsewhere: the one that rounding disturbs least is taken in the end.
       if (e < best) {
@@ -162,13 +164,13 @@ StepStatus RungeKutta::step(double limit) {
       h = lengths < most_lengths ? lengthening * tried : best_length;
       continue;
     }
-    if (defined && (e <= 1.0 || (blurred && e <= blur(tried) / tolerance_))) {
+    if (defined && (e <= 1.0 || (blurred && e <= blur(length) / tolerance_))) {
       ++statistics_.steps;
       if (!is_fixed()) {
         control(std::min(e, 1.0), tried, lengths > 0 ? tried : h, rejected || blurred);
-        look_for_stiffness(tried);
+        look_for_stiffness(length);
       }
-      finish(last ? limit : time_ + tried);
+      finish(end);
       return StepStatus::done;
     }
     if (is_fixed() || tried < least) return StepStatus::too_small;

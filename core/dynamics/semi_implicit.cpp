@@ -37,12 +37,13 @@ StepStatus SemiImplicitEuler::step(double limit) {
   before_ = time_;
   const double rest = limit - time_;
   const bool last = rest <= step_ * (1.0 + 1e-9);
-  if (!move(last ? rest : step_)) {
+  const double end = last ? limit : time_ + step_;
+  if (!move(end - time_)) {  // steps add up to the time that has passed
     y_ = y_before_;
     slope_ = slope_before_;
     return StepStatus::too_small;
   }
-  time_ = last ? limit : time_ + step_;
+  time_ = end;
   ++statistics_.steps;
   return StepStatus::done;
 }

@@ -2,6 +2,7 @@
 
 import math
 import pathlib
+import sys
 import tempfile
 import unittest
 
@@ -42,7 +43,9 @@ stop = true
         state.close()
         with koppel.Simulation(state, tolerance=1e-10) as simulation:
             crossing = simulation.watch(10.0, state)
-            self.assertEqual(crossing, koppel.Crossing("aloft", table["time"][-1], crossing.rising, True))
+            self.assertEqual(crossing, koppel.Crossing("aloft", crossing.time, crossing.rising, True))
+            # Searched between other rows, each time to four units of rounding.
+            self.assertAlmostEqual(crossing.time, table["time"][-1], delta=8 * sys.float_info.epsilon)
             self.assertIsNone(simulation.watch(crossing.time, state))
 
     def test_goes_on_from_the_rates_that_a_state_has(self):

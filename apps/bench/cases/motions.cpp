@@ -99,6 +99,34 @@ Outcome ten_rods(const Plan&) {
   return moved_to(load_text(pendulum_chain(10)), problem, 100.0);
 }
 
+/// A ball that spins by itself at 1 rad/s, in steps of 1e-2 s.
+Outcome spinning_ball(const Plan& plan) {
+  const double steps = plan.quick ? 1e6 : 1e8, end = 1e-2 * steps;
+  const char* const ball =
+      "schema = 1\n[scene]\nname = 'ball'\nlength = 1\n"
+      "[[body]]\nname = 'ball'\nmass = 1\ninertia = [1, 1, 1, 0, 0, 0]\n"
+      "[[joint]]\nname = 'pivot'\ntype = 'spherical'\noutlet = 'ball'\ninlet = 'ground'\n"
+      "start_rate = { rotation = [0.36, 0.48, 0.8] }\n";
+  Trial trial(load_text(ball), end);
+  // Each step rounds the quaternion.
+  const double allowed = steps * std::numeric_limits<double>::epsilon();
+  if (std::isnan(trial.run({semi_implicit, 1e-2}))) return {trial.problem(), infinity, allowed};
+  const std::vector<double> q =
+      trial.values({"pivot.rotation.w", "pivot.rotation.x", "pivot.rotation.y", "pivot.rotation.z"});
+  const double cosine = std::cos(end / 2), sine = std::sin(end / 2);
+  const double expected[] = {cosine, 0.36 * sine, 0.48 * sine, 0.8 * sine};
+  double size = 0.0, to = 0.0, to_opposite = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    size += q[i] * q[i];
+    to = std::max(to, std::abs(q[i] - expected[i]));
+    to_opposite = std::max(to_opposite, std::abs(q[i] + expected[i]));
+  }
+  std::ostringstream found;
+  found << std::setprecision(2) << trial.summary().steps << " steps; length of the quaternion off by "
+        << std::abs(std::sqrt(size) - 1.0);
+  return {found.str(), std::min(to, to_opposite), allowed};
+}
+
 // Growth: linear in time for motions of one freedom, (1 + end * rate).
 Outcome flat_bars(const Plan& plan) { return known(plan, "nfourbar", 100.0); }
 Outcome folding_motion(const Plan& plan) { return known(plan, "folding_slidercrank", 100.0); }
@@ -126,6 +154,8 @@ std::vector<Case> hard_motions() {
        "the first one moves as if alone, to the tolerance times steps", light_tip},
       {"masses", "a parallelogram of masses over twelve decades",
        "moves like one pendulum, to the tolerance times steps", masses},
+      {"spinning_ball", "a quaternion that turns for 10^8 steps (10^6 with --quick)",
+       "the turn that the time makes, to rounding times steps", spinning_ball},
       {"far_pendulum", "a pendulum a million metres from the origin",
        "swings as at the origin, to the tolerance times steps and the rounding of places", far_pendulum},
   };

@@ -135,12 +135,13 @@ class Row {
 
 void add_row(Bench& bench) {
   const std::vector<int> sizes =
-      bench.plan.quick ? std::vector<int>{1, 3, 10, 30} : std::vector<int>{1, 3, 10, 30, 100, 300, 1000};
+      bench.plan.quick ? std::vector<int>{1, 3, 10, 30} : std::vector<int>{1, 3, 10, 30, 100, 300, 1000, 4096};
   const Json::json_pointer place =
       bench.entry("scaling", {{"name", "fourbar_row"},
                               {"title", "four-bars driven by each other, one step of a run"},
                               {"points", Json::array()}});
   for (const int count : sizes) {
+    progress("scaling/fourbar_row of " + std::to_string(count));
     const auto row = std::make_shared<Row>(count);
     double error = 0.0;
     const bool finished = !std::isnan(row->pass(&error));

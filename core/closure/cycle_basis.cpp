@@ -1,10 +1,12 @@
 #include "closure/cycle_basis.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <map>
 #include <queue>
+#include <unordered_map>
 #include <utility>
 
 namespace koppel {
@@ -35,31 +37,39 @@ class Graph {
     return edges_[edge].a == body ? edges_[edge].b : edges_[edge].a;
   }
 
-  /// Lightest ways from a body: by which edge each body is reached. Stops at `target`; does not use `avoided`.
-  std::vector<std::uint32_t> ways(std::uint32_t from, std::uint32_t avoided = none, std::uint32_t target = none) const {
-    // Few joints before light ones would make walks longer; a joint counts for a little, so that welds cost something.
-    using Entry = std::pair<std::uint64_t, std::uint32_t>;
-    std::vector<std::uint64_t> distance(at_.size(), std::numeric_limits<std::uint64_t>::max());
+  /// Lightest ways from a body: by which edge each body is reached.
+  std::vector<std::uint32_t> ways(std::uint32_t from) const {
+    Search search(from);
+    while (!search.done()) search.go_on(*this);
     std::vector<std::uint32_t> by(at_.size(), none);
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-    distance[from] = 0;
-    front.push({0, from});
-    while (!front.empty()) {
-      const auto [so_far, body] = front.top();
-      front.pop();
-      if (so_far > distance[body]) continue;
-      if (body == target) break;
-      for (const std::uint32_t edge : at_[body]) {
-        if (edge == avoided) continue;
-        const std::uint32_t next = other_end(edge, body);
-        const std::uint64_t length = so_far + cost(edge);
-        if (length >= distance[next]) continue;
-        distance[next] = length;
-        by[next] = edge;
-        front.push({length, next});
+    for (const auto& [body, place] : search.met) by[body] = place.by;
+    return by;
+  }
+
+  /// The edges of a lightest way between the ends of an edge that does not use it; none if there is none. Searched from
+  /// both ends, and first where few joints are: a body with many is met, but hardly ever gone on from.
+  std::vector<std::uint32_t> detour(std::uint32_t edge) const {
+    Search from_a(edges_[edge].a, edge), from_b(edges_[edge].b, edge);
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+    std::uint32_t middle = none;
+    while (!from_a.done() && !from_b.done() && from_a.next() + from_b.next() < least) {
+      const bool a_first = at_[from_a.body()].size() <= at_[from_b.body()].size();
+      Search &here = a_first ? from_a : from_b, &there = a_first ? from_b : from_a;
+      here.go_on(*this, [&](std::uint32_t body, std::uint64_t distance) {
+        const auto other = there.met.find(body);
+        if (other == there.met.end() || distance + other->second.distance >= least) return;
+        least = distance + other->second.distance;
+        middle = body;
+      });
+    }
+    std::vector<std::uint32_t> used;
+    if (middle == none) return used;
+    for (const Search* half : {&from_a, &from_b}) {
+      for (std::uint32_t body = middle, by = none; (by = half->met.at(body).by) != none; body = other_end(by, body)) {
+        used.push_back(by);
       }
     }
-    return by;
+    return used;
   }
 
   /// The edges of the way to a body, back to its start, toggled in `edges`.
@@ -108,6 +118,48 @@ class Graph {
   }
 
  private:
+  /// Dijkstra's, with the bodies that it has met so far. Few joints before light ones would make walks longer; a joint
+  /// counts for a little, so that welds cost something.
+  struct Search {
+    struct Place {
+      std::uint64_t distance;
+      std::uint32_t by;  ///< edge
+    };
+    using Entry = std::pair<std::uint64_t, std::uint32_t>;
+
+    explicit Search(std::uint32_t from, std::uint32_t without = none) : avoided(without) {
+      met.emplace(from, Place{0, none});
+      front.push({0, from});
+    }
+    bool done() const { return front.empty(); }
+    std::uint64_t next() const { return front.top().first; }
+    std::uint32_t body() const { return front.top().second; }
+    /// Goes on from the nearest body; tells each that is reached on a shorter way than before.
+    template <typename Reached>
+    void go_on(const Graph& graph, const Reached& reached) {
+      const auto [so_far, body] = front.top();
+      front.pop();
+      if (so_far > met.at(body).distance) return;
+      for (const std::uint32_t edge : graph.at_[body]) {
+        if (edge == avoided) continue;
+        const std::uint32_t to = graph.other_end(edge, body);
+        const std::uint64_t length = so_far + graph.cost(edge);
+        const auto [place, fresh] = met.try_emplace(to, Place{length, edge});
+        if (!fresh && length >= place->second.distance) continue;
+        place->second = {length, edge};
+        front.push({length, to});
+        reached(to, length);
+      }
+    }
+    void go_on(const Graph& graph) {
+      go_on(graph, [](std::uint32_t, std::uint64_t) {});
+    }
+
+    std::uint32_t avoided;
+    std::unordered_map<std::uint32_t, Place> met;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+  };
+
   const std::vector<WeightedEdge>& edges_;
   std::vector<std::vector<std::uint32_t>> at_;
 };
@@ -138,11 +190,9 @@ std::vector<Candidate> candidates(const Graph& graph, std::size_t bodies) {
   } else {
     add_from(0);
     for (std::uint32_t edge = 0; edge < graph.edges().size(); ++edge) {
-      const WeightedEdge& e = graph.edges()[edge];
-      const std::vector<std::uint32_t> by = graph.ways(e.a, edge, e.b);
-      if (by[e.b] == none) continue;
-      std::vector<std::uint32_t> used{edge};
-      graph.toggle_way(by, e.b, used);
+      std::vector<std::uint32_t> used = graph.detour(edge);
+      if (used.empty()) continue;
+      used.push_back(edge);
       result.push_back(graph.candidate(std::move(used)));
     }
   }
@@ -150,6 +200,8 @@ std::vector<Candidate> candidates(const Graph& graph, std::size_t bodies) {
   std::sort(result.begin(), result.end(), [](const Candidate& a, const Candidate& b) {
     return a.key() != b.key() ? a.key() < b.key() : a.edges < b.edges;
   });
+  const auto same = [](const Candidate& a, const Candidate& b) { return a.edges == b.edges; };
+  result.erase(std::unique(result.begin(), result.end(), same), result.end());
   return result;
 }
 
@@ -200,7 +252,7 @@ std::vector<std::vector<EdgeStep>> cycle_basis(std::size_t bodies, const std::ve
   for (std::size_t first = 0; first < all.size() && basis.size() < wanted;) {
     std::size_t end = first;
     while (end < all.size() && all[end].key() == all[first].key()) ++end;
-    std::vector<std::uint32_t> open;
+    std::deque<std::uint32_t> open;
     for (std::size_t i = first; i < end; ++i) open.push_back(static_cast<std::uint32_t>(i));
     while (!open.empty() && basis.size() < wanted) {
       auto next = open.begin();

@@ -11,9 +11,11 @@ namespace koppel {
 
 FlowPlan::FlowPlan(Flow& flow)
     : flow_(flow),
+      places_(flow.loops.variables.size()),
       known_(flow.loops.variables.size(), false),
       loops_of_(flow.loops.variables.size()),
       done_(flow.loops.loops.size(), false),
+      touched_(flow.loops.loops.size(), true),
       stale_(flow.loops.loops.size(), true),
       recovering_(flow.loops.loops.size(), false),
       used_cut_(flow.loops.loops.size()),
@@ -32,8 +34,13 @@ void FlowPlan::run() {
   while (unfinished()) {
     bool read = false;
     for (std::uint32_t loop = 0; loop < done_.size(); ++loop) {
-      if (!done_[loop] && unknown_in(loop).empty()) done_[loop] = true;
-      if (!done_[loop] && stale_[loop]) read = read_joint(loop) || read;
+      if (done_[loop] || !touched_[loop]) continue;
+      touched_[loop] = false;
+      if (unknown_in(loop).empty()) {
+        done_[loop] = true;
+      } else {
+        read = read_joint(loop) || read;
+      }
     }
     if (read || !unfinished()) continue;
     if (take_one() || take_two() || take_spin() || take_block()) continue;
@@ -71,7 +78,7 @@ bool FlowPlan::shared(std::uint32_t variable, std::uint32_t loop) const {
 void FlowPlan::learn(const Variables& variables) {
   for (const std::uint32_t v : variables) {
     known_[v] = true;
-    for (const std::uint32_t loop : loops_of_[v]) stale_[loop] = true;
+    for (const std::uint32_t loop : loops_of_[v]) touched_[loop] = stale_[loop] = true;
   }
 }
 

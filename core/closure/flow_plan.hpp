@@ -49,6 +49,7 @@ class FlowPlan {
   void refresh(std::uint32_t loop);
   PlannedCut planned(std::uint32_t loop, const CutJoint& a, const std::optional<CutJoint>& b);
   std::vector<CutJoint> cut_joints(std::uint32_t loop) const;
+  std::span<const Place<double>> shuffled(std::uint32_t loop);
   Loop closed(std::uint32_t loop, std::span<const Place<double>> at) const;
   enum class Positions { any, closed };
   std::vector<std::vector<std::uint32_t>> entering(const LoopCut& cut, Positions positions);
@@ -104,9 +105,11 @@ class FlowPlan {
 
   Flow& flow_;
   std::mt19937_64 random_{20240229};
+  std::vector<Place<double>> places_;  ///< random ones, of each variable
   std::vector<bool> known_;
   std::vector<std::vector<std::uint32_t>> loops_of_;    ///< of each variable
   std::vector<bool> done_;                              ///< loops without unknowns
+  std::vector<bool> touched_;                           ///< loops of which more is known than when last looked at
   std::vector<bool> stale_;                             ///< loops whose cuts must be found anew
   std::vector<bool> recovering_;                        ///< loops that are closed but for their cut joints' coordinates
   std::vector<std::optional<std::uint32_t>> used_cut_;  ///< of each loop, the last that a step used

@@ -16,24 +16,18 @@ constexpr double rounding = 1e-12;  // of derivatives: some thousand units
 constexpr int trials = 3;           // random positions: a derivative that vanishes at all of them vanishes everywhere
 constexpr std::size_t longest_run = 3;
 
-std::vector<Place<double>> random_places(std::span<const Variable> variables, double length, std::mt19937_64& random) {
+Place<double> random_place(VariableKind kind, double length, std::mt19937_64& random) {
   std::uniform_real_distribution<double> between(-1.0, 1.0);
-  std::vector<Place<double>> at;
-  for (const Variable& variable : variables) {
-    Place<double> p{};
-    if (variable.kind == VariableKind::turn) {
-      const double angle = std::numbers::pi * between(random);
-      p = {std::cos(angle), std::sin(angle), 0.0, 0.0};
-    } else if (variable.kind == VariableKind::slide) {
-      p[0] = length * between(random);
-    } else {
-      std::generate(p.begin(), p.end(), [&] { return between(random); });
-      const double norm = std::hypot(std::hypot(p[0], p[1]), std::hypot(p[2], p[3]));
-      for (double& x : p) x /= norm;
-    }
-    at.push_back(p);
+  if (kind == VariableKind::turn) {
+    const double angle = std::numbers::pi * between(random);
+    return {std::cos(angle), std::sin(angle), 0.0, 0.0};
   }
-  return at;
+  if (kind == VariableKind::slide) return {length * between(random), 0.0, 0.0, 0.0};
+  Place<double> place{};
+  std::generate(place.begin(), place.end(), [&] { return between(random); });
+  const double norm = std::hypot(std::hypot(place[0], place[1]), std::hypot(place[2], place[3]));
+  for (double& x : place) x /= norm;
+  return place;
 }
 
 /// Whether a loop that is cut at one joint meets the conditions with opposite axes, too.
@@ -70,6 +64,14 @@ std::vector<CutJoint> FlowPlan::cut_joints(std::uint32_t index) const {
     }
   }
   return result;
+}
+
+/// Other random places for the variables of a loop; those of other loops stay.
+std::span<const Place<double>> FlowPlan::shuffled(std::uint32_t loop) {
+  for (const LoopMotion& motion : flow_.loops.loops[loop].motions) {
+    places_[motion.variable] = random_place(flow_.loops.variables[motion.variable].kind, flow_.length, random_);
+  }
+  return places_;
 }
 
 /// The loop, closed for these places by another link before a motion that is known; as it is if there is none.
@@ -115,7 +117,7 @@ void FlowPlan::for_each_rate(const LoopCut& cut, const Loop& loop, std::span<con
 std::vector<std::vector<std::uint32_t>> FlowPlan::entering(const LoopCut& cut, Positions positions) {
   std::vector<std::vector<std::uint32_t>> result(cut.conditions.size());
   for (int trial = 0; trial < trials; ++trial) {
-    const auto at = random_places(flow_.loops.variables, flow_.length, random_);
+    const auto at = shuffled(cut.loop);
     const Loop loop = positions == Positions::closed ? closed(cut.loop, at) : flow_.loops.loops[cut.loop];
     for_each_rate(cut, loop, at, [&](std::size_t condition, const WayColumn<double>& column, double rate) {
       if (std::abs(rate) > tolerance) {
@@ -182,11 +184,11 @@ bool FlowPlan::leaves_cross(std::uint32_t loop, const LoopCut& cut) const {
 
 /// Whether two conditions have independent derivatives by two variables at a random position.
 bool FlowPlan::independent(std::span<const LoopCondition> conditions, const Variables& by) {
-  const auto at = random_places(flow_.loops.variables, flow_.length, random_);
+  for (const LoopCondition& row : conditions) shuffled(row.cut->loop);
   Eigen::Matrix2d jacobian = Eigen::Matrix2d::Zero();
   for (Eigen::Index i = 0; i < 2; ++i) {
     const LoopCondition& row = conditions[static_cast<std::size_t>(i)];
-    for_each_rate(*row.cut, flow_.loops.loops[row.cut->loop], at,
+    for_each_rate(*row.cut, flow_.loops.loops[row.cut->loop], places_,
                   [&](std::size_t condition, const WayColumn<double>& column, double rate) {
                     const auto found = std::find(by.begin(), by.end(), column.variable);
                     if (condition == row.condition && found != by.end()) jacobian(i, found - by.begin()) += rate;
@@ -198,7 +200,7 @@ bool FlowPlan::independent(std::span<const LoopCondition> conditions, const Vari
 
 /// How many of a cut's conditions are independent in some variables, at a random position where the loop is closed.
 std::size_t FlowPlan::rank_of(const LoopCut& cut, const Variables& by) {
-  const auto at = random_places(flow_.loops.variables, flow_.length, random_);
+  const auto at = shuffled(cut.loop);
   Eigen::MatrixXd jacobian =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(cut.conditions.size()), 3 * static_cast<Eigen::Index>(by.size()));
   for_each_rate(cut, closed(cut.loop, at), at,
@@ -247,7 +249,7 @@ FlowPlan::Share FlowPlan::share_of(std::uint32_t loop) {
 
 /// How many conditions close a loop, by the motions that its joints make.
 int FlowPlan::conditions_of(std::uint32_t index) {
-  const auto at = random_places(flow_.loops.variables, flow_.length, random_);
+  const auto at = shuffled(index);
   std::vector<WayColumn<double>> walked;
   walk<double>(round_way(flow_.loops.loops[index], flow_.loops.variables), at, &walked);
   std::vector<Column> columns;
@@ -258,7 +260,7 @@ int FlowPlan::conditions_of(std::uint32_t index) {
 
 /// How many of them its unknowns can meet, at a random position where it is closed: not the spin of a link.
 int FlowPlan::rank_of_loop(std::uint32_t index) {
-  const auto at = random_places(flow_.loops.variables, flow_.length, random_);
+  const auto at = shuffled(index);
   std::vector<WayColumn<double>> columns;
   walk<double>(round_way(closed(index, at), flow_.loops.variables), at, &columns);
   std::erase_if(columns, [this](const WayColumn<double>& column) { return known_[column.variable]; });

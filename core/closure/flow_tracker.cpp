@@ -11,18 +11,9 @@ namespace {
 
 constexpr std::size_t written_out = 3;  // variables of a condition: with more of them walking costs less
 
-/// The places of all variables for one sample of a form.
-std::vector<Place<double>> places_at(std::span<const Variable> all, std::span<const std::uint32_t> variables,
-                                     std::span<const double> x) {
-  std::vector<Place<double>> at(all.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    // What does not enter may be anything: here it does not move.
-    if (all[i].kind != VariableKind::slide) at[i][0] = 1.0;
-  }
-  for (std::size_t i = 0; i < variables.size(); ++i) {
-    at[variables[i]] = place_at(all[variables[i]].kind, x[i]);
-  }
-  return at;
+/// Where a coordinate does not move what it belongs to.
+Place<double> at_rest(const Variable& variable) {
+  return {variable.kind == VariableKind::slide ? 0.0 : 1.0, 0.0, 0.0, 0.0};
 }
 
 /// With one variable moved to the end.
@@ -41,9 +32,11 @@ std::optional<FlowTracker> FlowTracker::of(const Mechanism& mechanism, const Flo
   }
   FlowTracker tracker(mechanism, flow);
   std::size_t most_columns = 0;
+  std::vector<Place<double>> places;
+  for (const Variable& variable : tracker.variables_) places.push_back(at_rest(variable));
   for (const FlowStep& from : flow.steps) {
     Step step;
-    if (!tracker.compile(flow, from, step)) return std::nullopt;
+    if (!tracker.compile(flow, from, places, step)) return std::nullopt;
     for (const Row& row : step.rows) {
       most_columns = std::max({most_columns, 3 * row.lower.legs.size(), 3 * row.upper.legs.size()});
     }
@@ -75,7 +68,9 @@ FlowTracker::FlowTracker(const Mechanism& mechanism, const Flow& flow)
   extended_[2].setZero(mechanism.nv + 6 * more);
 }
 
-bool FlowTracker::compile(const Flow& flow, const FlowStep& from, Step& step) const {
+/// places: of all variables, at rest, before and afterwards.
+bool FlowTracker::compile(const Flow& flow, const FlowStep& from, std::vector<Place<double>>& places,
+                          Step& step) const {
   if (from.kind == StepKind::spin || !from.whole_loops.empty()) return false;
   step.kind = from.kind;
   step.given = from.given;
@@ -103,8 +98,12 @@ bool FlowTracker::compile(const Flow& flow, const FlowStep& from, Step& step) co
         from.kind == StepKind::two_unknowns || (from.kind == StepKind::one_unknown && variables.size() <= written_out);
     if (small) {
       row.form = ProductForm::of(variables, variables_, length_, [&](std::span<const double> x) {
-        return openness(row.condition, row.lower, row.upper, places_at(variables_, variables, x), length_);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          places[variables[i]] = place_at(variables_[variables[i]].kind, x[i]);
+        }
+        return openness(row.condition, row.lower, row.upper, places, length_);
       });
+      for (const std::uint32_t v : variables) places[v] = at_rest(variables_[v]);
     }
     if (from.kind == StepKind::two_unknowns && !row.form) return false;
     step.rows.push_back(std::move(row));

@@ -86,7 +86,7 @@ class FlowTracker {
   };
   FlowTracker(const Mechanism& mechanism, const Flow& flow);
 
-  bool compile(const Flow& flow, const FlowStep& from, Step& step) const;
+  bool compile(const Flow& flow, const FlowStep& from, std::vector<Place<double>>& places, Step& step) const;
   void compile_joint(const Flow& flow, const FlowStep& from, Step& step) const;
 
   bool follow_steps(const Sides& sides);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace koppel {
 namespace {
@@ -66,7 +67,6 @@ std::optional<ProductForm> ProductForm::of(std::span<const std::uint32_t> variab
     if (all[v].kind == VariableKind::ball) return std::nullopt;
   }
   ProductForm form;
-  form.variables_.assign(variables.begin(), variables.end());
   form.coefficients_.resize(power(n));
   std::vector<double> at(n);
   const auto kind = [&](std::size_t i) { return all[variables[i]].kind; };
@@ -88,18 +88,21 @@ std::optional<ProductForm> ProductForm::of(std::span<const std::uint32_t> variab
   for (double& c : form.coefficients_) {
     if (std::abs(c) <= 4.0 * std::numeric_limits<double>::epsilon() * form.size_) c = 0.0;
   }
-  // A function of higher order does not agree between the sample points.
-  std::vector<CoordinateBasis> bases(all.size());
+  // A function of higher order does not agree between the sample points. For now its variables are those alone.
+  std::vector<CoordinateBasis> bases(n);
+  form.variables_.resize(n);
+  std::iota(form.variables_.begin(), form.variables_.end(), 0u);
   for (std::size_t i = 0; i < n; ++i) {
     at[i] = kind(i) == VariableKind::turn ? 1.0 + 0.1 * static_cast<double>(i) : 0.6 * length;
     if (kind(i) == VariableKind::turn) {
-      bases[variables[i]].set_turn(std::cos(at[i]), std::sin(at[i]));
+      bases[i].set_turn(std::cos(at[i]), std::sin(at[i]));
     } else {
-      bases[variables[i]].set_slide(at[i]);
+      bases[i].set_slide(at[i]);
     }
   }
   constexpr double roundings = 1e-12;  // many: half a millionth of what a higher order would leave
   if (std::abs(form.value(bases)[0] - function(at)) > roundings * (form.size_ + 1.0)) return std::nullopt;
+  form.variables_.assign(variables.begin(), variables.end());
   return form;
 }
 

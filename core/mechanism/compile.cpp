@@ -183,21 +183,25 @@ class Compiler {
     return tl::make_unexpected(std::move(error));
   }
 
-  /// The largest distance between two joint frames on one body, unless the scene sets it.
+  /// The largest distance between two joint frames on one body, unless the scene sets it. The ground, which may carry
+  /// many small mechanisms, counts for no more than a hundred times what moves.
   void take_length() {
-    double longest = 0.0, reach = 0.0;
+    constexpr double more_than_moves = 100.0;
+    double longest = 0.0, moving = 0.0, reach = 0.0;
     std::vector<std::vector<Vector3>> points(m().bodies.size());
     for (const Joint& joint : m().joints) {
       for (const Attachment* side : {&joint.inlet, &joint.outlet}) {
         reach = std::max(reach, side->pose.position.norm());
         for (const Vector3& other : points[side->body.index()]) {
-          longest = std::max(longest, (side->pose.position - other).norm());
+          double& of_kind = side->body == ground ? longest : moving;
+          of_kind = std::max(of_kind, (side->pose.position - other).norm());
         }
         points[side->body.index()].push_back(side->pose.position);
       }
     }
     // Joints that would be at one point but for the rounding of how it is written are no distance apart.
     constexpr double rounding = 1e-12;
+    if (moving > rounding * reach) longest = std::clamp(longest, moving, more_than_moves * moving);
     const bool apart = longest > rounding * reach;
     m().length = scene_.length.value_or(apart ? longest : 1.0);
     if (!scene_.length && !apart) {

@@ -281,5 +281,26 @@ TEST(CycleBasis, OfALongLadderIsItsMeshes) {
   EXPECT_EQ(different.size(), rungs - 1) << "each mesh once";
 }
 
+/// The same where all stands on one body, and couplers join neighbours: every walk might pass the ground.
+TEST(CycleBasis, OfManyFourBarsInARowIsEachOfThem) {
+  constexpr std::uint32_t loops = 1000;
+  Edges edges{{0, 1}};
+  for (std::uint32_t i = 1; i <= loops; ++i) {
+    const std::uint32_t before = 2 * i - 1, coupler = 2 * i, bar = 2 * i + 1;
+    edges.insert(edges.end(), {{0, bar}, {before, coupler}, {coupler, bar}});
+  }
+  const Basis basis = cycle_basis(2 * loops + 2, edges);
+  ASSERT_EQ(basis.size(), loops);
+  std::set<std::uint32_t> couplers;
+  for (const auto& walk : basis) {
+    EXPECT_EQ(walk.size(), 4u);
+    expect_closed_walk(walk, edges);
+    for (const EdgeStep& step : walk) {
+      if (edges[step.edge].a % 2 == 0 && edges[step.edge].a != 0) couplers.insert(edges[step.edge].a);
+    }
+  }
+  EXPECT_EQ(couplers.size(), loops) << "each once";
+}
+
 }  // namespace
 }  // namespace koppel::test

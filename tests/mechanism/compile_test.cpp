@@ -52,6 +52,18 @@ TEST(Compile, TakesTheLargestDistanceOnABodyAsLength) {
   EXPECT_EQ(Built("[scene]\nlength = 0.4\n" + four_bar())->length, 0.4);
 }
 
+TEST(Compile, LengthIsNotThatOfAGroundWithManySmallMechanisms) {
+  const auto bar = [](const std::string& n, double x) {
+    return "[[body]]\nname = 'bar" + n + "'\n[[joint]]\nname = 'a" + n + "'\ntype = 'revolute'\noutlet = 'bar" + n +
+           "'\ninlet = { on = 'ground', at = [" + std::to_string(x) + ", 0, 0] }\n[[body]]\nname = 'tip" + n +
+           "'\n[[joint]]\nname = 'b" + n + "'\ntype = 'revolute'\ninlet = { on = 'bar" + n +
+           "', at = [0.5, 0, 0] }\noutlet = 'tip" + n + "'\n";
+  };
+  EXPECT_EQ(Built(bar("1", 0.0) + bar("2", 0.25))->length, 0.5);
+  EXPECT_EQ(Built(bar("1", 0.0) + bar("2", 40.0))->length, 40.0);
+  EXPECT_EQ(Built(bar("1", 0.0) + bar("2", 4000.0))->length, 50.0);
+}
+
 TEST(Compile, ScalesRowsInMetresAndRatesOfLines) {
   const Built built("[scene]\nlength = 0.4\n" + four_bar());
   for (std::uint32_t i = 0; i < built->rows; ++i) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "closure/closing.hpp"
 #include "closure/flow_tracker.hpp"
@@ -186,6 +187,30 @@ std::optional<koppel_status> follow_flow(Work& work, State& state, Report& repor
   return status;
 }
 
+/// The time in which the inputs, as they move, come to where they shall be now; 0 if they are on another way.
+double time_to_inputs(const Mechanism& mechanism, const State& state) {
+  const auto left_and_rate = [&](std::size_t i) {
+    const Input& input = mechanism.inputs[i];
+    const double scale = mechanism.rate_scale[input.v];
+    return std::pair((state.input[static_cast<Eigen::Index>(i)] - state.q[input.q]) / scale, state.v[input.v] / scale);
+  };
+  double along = 0.0, square = 0.0, most = 0.0;
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    const auto [left, rate] = left_and_rate(i);
+    along += left * rate;
+    square += rate * rate;
+    most = std::max(most, std::abs(left));
+  }
+  if (square == 0.0) return 0.0;
+  constexpr double nearly = 0.1;  // a start value is all that is wanted
+  const double time = along / square;
+  for (std::size_t i = 0; i < mechanism.inputs.size(); ++i) {
+    const auto [left, rate] = left_and_rate(i);
+    if (std::abs(left - time * rate) > nearly * most) return 0.0;
+  }
+  return time;
+}
+
 /// Whether nothing is asked for but the closed position that continues the motion.
 bool is_plain(const CloseOptions& options) {
   return options.method == Method::automatic && options.branch == Branch::stay && options.max_iterations == 0 &&
@@ -277,7 +302,9 @@ koppel_status close(Work& work, State& state, const CloseOptions& options, Repor
   if (is_plain(options) && state.stage != Stage::assigned && !inputs_taken(*work.mechanism, state)) {
     report = Report{};
     work.branch_rates.reset();
-    work.q = state.q;
+    const double h = state.stage == Stage::accelerations ? time_to_inputs(*work.mechanism, state) : 0.0;
+    work.delta = h * state.v + (h * h / 2.0) * state.a;
+    integrate(*work.mechanism, state.q, work.delta, work.q);
     if (const auto status = follow_flow(work, state, report)) return *status;
   }
   return close_by_equations(work, state, options, report);

@@ -130,6 +130,29 @@ TEST_P(TrackedScene, ClosesForNewInputsAsByNewtonsMethod) {
   EXPECT_GE(followed, steps * 9 / 10);
 }
 
+/// A wheel lifted by a centimetre at a time: the last rates tell where it will be, well enough for every step.
+TEST(FlowTracker, GoesOnAlongTheMotionWhereOnlyInputsAreSet) {
+  Closed closed(shipped("multilink"));
+  ASSERT_GE(closed.move(0.0), 0);
+  const auto& inputs = closed.built->inputs;
+  const auto lifted = static_cast<Eigen::Index>(
+      std::find_if(inputs.begin(), inputs.end(),
+                   [&](const Input& input) { return input.q == closed.built.coordinate("wheel.z"); }) -
+      inputs.begin());
+  ASSERT_LT(lifted, closed.state.input.size());
+  closed.state.input_rate.setZero();
+  closed.state.input_acceleration.setZero();
+  closed.state.input_rate[lifted] = 0.1;
+  ASSERT_EQ(velocities(closed.work, closed.state), KOPPEL_OK);
+  ASSERT_EQ(accelerations(closed.work, closed.state), KOPPEL_OK);
+  for (int i = 1; i <= 8; ++i) {
+    closed.state.input[lifted] += 0.01;
+    ASSERT_EQ(closed.close() & ~KOPPEL_REDUNDANT, KOPPEL_OK) << i;
+    EXPECT_EQ(closed.report.solver, SolverUsed::flow) << i;
+    EXPECT_LE(closed.residual(), 1e-14) << i;
+  }
+}
+
 /// What it says of its error is no less than what it is off by, and not much more.
 TEST_P(TrackedScene, KnowsItsError) {
   Tracked tracked(shipped(GetParam()));

@@ -187,6 +187,19 @@ std::optional<koppel_status> follow_flow(Work& work, State& state, Report& repor
   return status;
 }
 
+/// From a closed state with accelerations to the time and the inputs that it has now, by closed forms. Nothing: not
+/// here.
+std::optional<koppel_status> track(Work& work, State& state, Report& report) {
+  const double h = state.time - state.history.time;
+  if (state.stage != Stage::accelerations || h == 0.0) return std::nullopt;
+  work.delta = h * state.v + (h * h / 2.0) * state.a;
+  if (state.history.step != 0.0) {
+    work.delta += (h * h * h / 6.0 / state.history.step) * (state.a - state.history.acceleration);
+  }
+  integrate(*work.mechanism, state.q, work.delta, work.q);
+  return follow_flow(work, state, report);
+}
+
 /// The time in which the inputs, as they move, come to where they shall be now; 0 if they are on another way.
 double time_to_inputs(const Mechanism& mechanism, const State& state) {
   const auto left_and_rate = [&](std::size_t i) {
@@ -232,14 +245,6 @@ koppel_status close_with_start_held(const Work& work, State& state, const CloseO
   if (status >= 0) state.q = closed.q;
   return status;
 }
-
-}  // namespace
-
-bool is_closed(const Mechanism& mechanism, const State& state) {
-  return state.stage != Stage::assigned && (!mechanism.explicit_time || state.time == state.history.time);
-}
-
-namespace {
 
 /// By Newton and what else there is where that does not do.
 koppel_status close_by_equations(Work& work, State& state, const CloseOptions& options, Report& report) {
@@ -297,6 +302,10 @@ koppel_status close_by_equations(Work& work, State& state, const CloseOptions& o
 }
 
 }  // namespace
+
+bool is_closed(const Mechanism& mechanism, const State& state) {
+  return state.stage != Stage::assigned && (!mechanism.explicit_time || state.time == state.history.time);
+}
 
 koppel_status close(Work& work, State& state, const CloseOptions& options, Report& report) {
   if (is_plain(options) && state.stage != Stage::assigned && !inputs_taken(*work.mechanism, state)) {
@@ -359,23 +368,6 @@ koppel_status accelerations(Work& work, State& state) {
   state.stage = Stage::accelerations;
   return KOPPEL_OK;
 }
-
-namespace {
-
-/// From a closed state with accelerations to the time and the inputs that it has now, by closed forms. Nothing: not
-/// here.
-std::optional<koppel_status> track(Work& work, State& state, Report& report) {
-  const double h = state.time - state.history.time;
-  if (state.stage != Stage::accelerations || h == 0.0) return std::nullopt;
-  work.delta = h * state.v + (h * h / 2.0) * state.a;
-  if (state.history.step != 0.0) {
-    work.delta += (h * h * h / 6.0 / state.history.step) * (state.a - state.history.acceleration);
-  }
-  integrate(*work.mechanism, state.q, work.delta, work.q);
-  return follow_flow(work, state, report);
-}
-
-}  // namespace
 
 koppel_status move(Work& work, State& state, double time, Report& report, Branch branch) {
   report = Report{};

@@ -126,8 +126,8 @@ TEST_P(TrackedScene, ClosesForNewInputsAsByNewtonsMethod) {
     EXPECT_LE(closed.residual(), 1e-13) << "to which the tracker closes";
     if (::testing::Test::HasFailure()) return;
   }
-  // Where two solutions come near each other, the last position alone may not tell them apart.
-  EXPECT_GE(followed, steps * 9 / 10);
+  // By Newton's method where the start is far from the last rates: at first, or where drives of several go their ways.
+  EXPECT_GE(followed, steps * 98 / 100);
 }
 
 /// A wheel lifted by a centimetre at a time: the last rates tell where it will be, well enough for every step.

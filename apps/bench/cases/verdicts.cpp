@@ -44,38 +44,39 @@ int starts(const Plan& plan) { return plan.quick ? 50 : 10000; }
 
 std::string count(int closed, int all) { return std::to_string(closed) + " of " + std::to_string(all) + " closed"; }
 
+/// Closes from anywhere, each time; error(moved): of a start that closed.
+template <typename Make, typename Error>
+Outcome all_close(int all, const Make& make, const Error& error) {
+  Scatter scatter;
+  double worst = 0.0;
+  int closed = 0;
+  for (int i = 0; i < all; ++i) {
+    Moved moved(make());
+    scatter(moved);
+    if (!moved.close()) continue;
+    ++closed;
+    worst = std::max(worst, error(moved));
+  }
+  if (closed < all) worst = infinity;
+  return {count(closed, all), worst, exact};
+}
+
 Outcome far_starts(const Plan& plan) {
   constexpr FourBar bar{0.35, 0.1, 0.335, 0.255};
   constexpr double crank = 0.9;
-  Scatter scatter;
-  double worst = 0.0;
-  int closed = 0;
-  for (int i = 0; i < starts(plan); ++i) {
-    Moved moved(bar.scene(crank, 0.0, 1));
-    scatter(moved);
-    if (!moved.close()) continue;
-    ++closed;
-    worst = std::max(worst, std::min(apart(moved.q("rocker.angle"), bar.rocker_angle(crank, 1)),
-                                     apart(moved.q("rocker.angle"), bar.rocker_angle(crank, -1))));
-  }
-  if (closed < starts(plan)) worst = infinity;
-  return {count(closed, starts(plan)), worst, exact};
+  return all_close(
+      starts(plan), [&] { return bar.scene(crank, 0.0, 1); },
+      [&](const Moved& moved) {
+        return std::min(apart(moved.q("rocker.angle"), bar.rocker_angle(crank, 1)),
+                        apart(moved.q("rocker.angle"), bar.rocker_angle(crank, -1)));
+      });
 }
 
-/// All starts of a scene close, to their residuals.
+/// Of a shipped scene; by its residuals.
 Outcome far_starts_of(const Plan& plan, const char* scene) {
-  Scatter scatter;
-  double worst = 0.0;
-  int closed = 0;
-  for (int i = 0; i < starts(plan); ++i) {
-    Moved moved(load(plan.scenes + '/' + scene + ".toml", false));
-    scatter(moved);
-    if (!moved.close()) continue;
-    ++closed;
-    worst = std::max(worst, moved.report().residual);
-  }
-  if (closed < starts(plan)) worst = infinity;
-  return {count(closed, starts(plan)), worst, exact};
+  return all_close(
+      starts(plan), [&] { return load(plan.scenes + '/' + scene + ".toml", false); },
+      [](const Moved& moved) { return moved.report().residual; });
 }
 
 Outcome far_starts_in_space(const Plan& plan) { return far_starts_of(plan, "rstr"); }

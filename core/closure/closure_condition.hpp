@@ -69,35 +69,62 @@ Vector3T<T> cross(const Vector3T<T>& a, const Vector3T<T>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+template <typename T>
+T dot(const Vector3T<T>& a, const Vector3T<T>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// How a value changes with the motion of frame a, in b's axes: by its turning, and by the velocity of its origin.
+template <typename T>
+struct ConditionSlope {
+  Vector3T<T> angular = Vector3T<T>::Zero(), linear = Vector3T<T>::Zero();
+
+  T along(const Vector3T<T>& turning, const Vector3T<T>& velocity) const {
+    return dot<T>(angular, turning) + dot<T>(linear, velocity);
+  }
+};
+
+template <typename T>
+ConditionSlope<T> slope(const ClosureCondition& condition, const PoseT<T>& a_in_b) {
+  const Vector3T<T>& r = a_in_b.position;
+  const Matrix3T<T>& m = a_in_b.rotation;
+  const auto axis = [](std::uint8_t k) { return Vector3T<T>(Vector3T<T>::Unit(k)); };
+  ConditionSlope<T> result;
+  switch (condition.type) {
+    case ClosureType::point_point: result.linear = T(2) * r; break;
+    case ClosureType::point_plane:
+      if (condition.at_a) {
+        // The component of -r along an axis that turns with a.
+        const Vector3T<T> normal = m.col(condition.axis_a);
+        result = {cross<T>(r, normal), -normal};
+      } else {
+        result.linear = axis(condition.axis_b);
+      }
+      break;
+    case ClosureType::point_line:
+      if (condition.at_a) {
+        const Vector3T<T> x = m.col(0), y = m.col(1);
+        const Vector3T<T> across = T(2) * (dot<T>(x, r) * x + dot<T>(y, r) * y);
+        result = {cross<T>(across, r), across};
+      } else {
+        result.linear = {T(2) * r[0], T(2) * r[1], T(0)};
+      }
+      break;
+    case ClosureType::angle: result.angular = cross<T>(m.col(condition.axis_a), axis(condition.axis_b)); break;
+    case ClosureType::line_line: {
+      const Vector3T<T> u = m.col(2), z = axis(2);
+      result = {cross<T>(u, cross<T>(r, z)), cross<T>(z, u)};
+      break;
+    }
+  }
+  return result;
+}
+
 /// How the value changes when frame a turns by `angular` and moves by `linear` (velocity of its origin), in b's axes.
 template <typename T>
 T change(const ClosureCondition& condition, const PoseT<T>& a_in_b, const Vector3T<T>& angular,
          const Vector3T<T>& linear) {
-  const Vector3T<T>& r = a_in_b.position;
-  const Matrix3T<T>& m = a_in_b.rotation;
-  const auto dot = [](const Vector3T<T>& x, const Vector3T<T>& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; };
-  // b seen from a moves with the velocity -(linear + angular x -r) at its origin.
-  const Vector3T<T> of_b = cross<T>(angular, r) - linear;
-  switch (condition.type) {
-    case ClosureType::point_point: return T(2) * dot(r, linear);
-    case ClosureType::point_plane:
-      if (!condition.at_a) return linear[condition.axis_b];
-      return dot(Vector3T<T>(m.col(condition.axis_a)), of_b);
-    case ClosureType::point_line: {
-      if (!condition.at_a) return T(2) * (r[0] * linear[0] + r[1] * linear[1]);
-      const Vector3T<T> x = m.col(0), y = m.col(1);
-      return T(-2) * (dot(x, r) * dot(x, of_b) + dot(y, r) * dot(y, of_b));
-    }
-    case ClosureType::angle: {
-      const Vector3T<T> turned = cross<T>(angular, m.col(condition.axis_a));
-      return turned[condition.axis_b];
-    }
-    case ClosureType::line_line: {
-      const Vector3T<T> u = m.col(2), turned = cross<T>(angular, u);
-      return turned[0] * r[1] - turned[1] * r[0] + u[0] * linear[1] - u[1] * linear[0];
-    }
-  }
-  return T(0);
+  return slope(condition, a_in_b).along(angular, linear);
 }
 
 /// What the value's second time derivative has beyond change() with the angular acceleration and the acceleration of
@@ -107,18 +134,20 @@ T quadratic_change(const ClosureCondition& condition, const PoseT<T>& a_in_b, co
                    const Vector3T<T>& linear) {
   const Vector3T<T>& r = a_in_b.position;
   const Matrix3T<T>& m = a_in_b.rotation;
-  const auto dot = [](const Vector3T<T>& x, const Vector3T<T>& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; };
   const auto turned = [&](std::uint8_t axis) { return cross<T>(angular, m.col(axis)); };
   const auto twice = [&](std::uint8_t axis) { return cross<T>(angular, turned(axis)); };
   // Of the component of r along an axis of a.
-  const auto component = [&](std::uint8_t axis) { return dot(twice(axis), r) + T(2) * dot(turned(axis), linear); };
+  const auto component = [&](std::uint8_t axis) {
+    return dot<T>(twice(axis), r) + T(2) * dot<T>(turned(axis), linear);
+  };
   switch (condition.type) {
-    case ClosureType::point_point: return T(2) * dot(linear, linear);
+    case ClosureType::point_point: return T(2) * dot<T>(linear, linear);
     case ClosureType::point_plane: return condition.at_a ? T(-component(condition.axis_a)) : T(0);
     case ClosureType::point_line: {
       if (!condition.at_a) return T(2) * (linear[0] * linear[0] + linear[1] * linear[1]);
-      const T x = dot(m.col(0), r), y = dot(m.col(1), r);
-      const T dx = dot(turned(0), r) + dot(m.col(0), linear), dy = dot(turned(1), r) + dot(m.col(1), linear);
+      const T x = dot<T>(m.col(0), r), y = dot<T>(m.col(1), r);
+      const T dx = dot<T>(turned(0), r) + dot<T>(m.col(0), linear),
+              dy = dot<T>(turned(1), r) + dot<T>(m.col(1), linear);
       return T(2) * (dx * dx + dy * dy + x * component(0) + y * component(1));
     }
     case ClosureType::angle: return twice(condition.axis_a)[condition.axis_b];

@@ -31,18 +31,14 @@ std::optional<FlowTracker> FlowTracker::of(const Mechanism& mechanism, const Flo
     if (std::find(flow.inputs.begin(), flow.inputs.end(), v) == flow.inputs.end()) return std::nullopt;
   }
   FlowTracker tracker(mechanism, flow);
-  std::size_t most_columns = 0;
   std::vector<Place<double>> places;
   for (const Variable& variable : tracker.variables_) places.push_back(at_rest(variable));
   for (const FlowStep& from : flow.steps) {
     Step step;
     if (!tracker.compile(flow, from, places, step)) return std::nullopt;
-    for (const Row& row : step.rows) {
-      most_columns = std::max({most_columns, 3 * row.lower.legs.size(), 3 * row.upper.legs.size()});
-    }
     tracker.steps_.push_back(std::move(step));
   }
-  tracker.columns_.reserve(most_columns);
+  tracker.compile_runs();
   return tracker;
 }
 
@@ -51,10 +47,10 @@ FlowTracker::FlowTracker(const Mechanism& mechanism, const Flow& flow)
       variables_(flow.loops.variables),
       inputs_(flow.inputs),
       bases_(variables_.size()),
-      places_(variables_.size()),
       errors_(variables_.size(), 0.0),
       mechanism_(&mechanism),
       kinematics_(mechanism) {
+  places_.variables.resize(variables_.size());
   const auto count = flow.loops.imaginary.size();
   if (count == 0) return;
   for (std::size_t i = 0; i < count; ++i) {
@@ -87,12 +83,9 @@ bool FlowTracker::compile(const Flow& flow, const FlowStep& from, std::vector<Pl
   for (const FlowRow& from_row : from.rows) {
     const LoopCut& cut = flow.cuts[from_row.cut];
     const Loop& loop = flow.loops.loops[cut.loop];
-    Row row{cut.conditions[from_row.condition],
-            std::nullopt,
-            lower_way(loop, variables_, cut),
-            upper_way(loop, variables_, cut),
-            {}};
-    row.rigid = {value(row.condition, row.lower.last), value(row.condition, row.upper.last)};
+    const Way lower = lower_way(loop, variables_, cut), upper = upper_way(loop, variables_, cut);
+    Row row{cut.conditions[from_row.condition], std::nullopt, tracked(lower), tracked(upper), {}};
+    row.rigid = {value(row.condition, lower.last), value(row.condition, upper.last)};
     const auto variables = with_last(from_row.variables, from.unknowns.back());
     const bool small =
         from.kind == StepKind::two_unknowns || (from.kind == StepKind::one_unknown && variables.size() <= written_out);
@@ -101,7 +94,7 @@ bool FlowTracker::compile(const Flow& flow, const FlowStep& from, std::vector<Pl
         for (std::size_t i = 0; i < x.size(); ++i) {
           places[variables[i]] = place_at(variables_[variables[i]].kind, x[i]);
         }
-        return openness(row.condition, row.lower, row.upper, places, length_);
+        return openness(row.condition, lower, upper, places, length_);
       });
       for (const std::uint32_t v : variables) places[v] = at_rest(variables_[v]);
     }
@@ -114,13 +107,42 @@ bool FlowTracker::compile(const Flow& flow, const FlowStep& from, std::vector<Pl
 void FlowTracker::compile_joint(const Flow& flow, const FlowStep& from, Step& step) const {
   const LoopCut& cut = flow.cuts[from.cut];
   const Loop& loop = flow.loops.loops[cut.loop];
-  step.around = lower_way(loop, variables_, cut);
+  step.around = tracked(lower_way(loop, variables_, cut));
   step.unknowns.clear();
   for (std::size_t i = 0; i < cut.a.count; ++i) {
     const LoopMotion& motion = loop.motions[(cut.a.first + i) % loop.motions.size()];
     step.unknowns.push_back(motion.variable);
     step.inverse.push_back(motion.inverse);
     step.against = step.against || (i == 1 && motion.to.rotation(2, 2) < 0.0);
+  }
+}
+
+/// Runs that the walked conditions, and the joints that are read, have in common.
+void FlowTracker::compile_runs() {
+  std::vector<WayOfStep> ways;
+  for (Step& step : steps_) {
+    const bool together = step.kind == StepKind::numerical;
+    constexpr int of_block = 5, of_condition = 3;  // iterations, rates and accelerations
+    for (Row& row : step.rows) {
+      if (row.form) continue;
+      for (TrackedWay* way : {&row.lower, &row.upper}) {
+        ways.push_back({way, step.unknowns, together ? of_block : of_condition});
+      }
+    }
+    if (step.kind == StepKind::joint) ways.push_back({&step.around, {}, 1});
+  }
+  places_.runs = share_runs(ways);
+  std::size_t most = 0;
+  for (const WayOfStep& way : ways) most = std::max(most, way.way->pieces.size());
+  frames_.reserve(most);
+  std::vector<std::size_t> known_after(variables_.size(), 0);  // steps
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    for (const std::uint32_t x : steps_[i].unknowns) known_after[x] = i + 1;
+  }
+  for (std::uint32_t i = 0; i < places_.runs.size(); ++i) {
+    std::size_t after = 0;
+    for (const Piece& piece : places_.runs[i].motions) after = std::max(after, known_after[piece.index]);
+    (after == 0 ? first_runs_ : steps_[after - 1].runs).push_back(i);
   }
 }
 
@@ -136,6 +158,7 @@ void FlowTracker::find_sides(const Eigen::VectorXd& q, Sides& sides) {
       place(i, all[variables_[i].q]);
     }
   }
+  for (Run& run : places_.runs) places_.place_run(run);
   for (std::size_t i = 0; i < steps_.size(); ++i) sides[i] = side_of(steps_[i]);
 }
 
@@ -172,6 +195,7 @@ bool FlowTracker::follow_steps(const Sides& sides) {
     set_motion(input, (*v_)[variable.v], (*a_)[variable.v]);
     errors_[input] = 0.0;
   }
+  finish_runs(first_runs_);
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     const Step& step = steps_[i];
     switch (step.kind) {
@@ -187,9 +211,19 @@ bool FlowTracker::follow_steps(const Sides& sides) {
         break;
       case StepKind::spin: return false;  // not compiled
     }
+    finish_runs(step.runs);
   }
   constexpr double closed = 1e-13;
   return std::isfinite(accuracy_.coordinate_error) && accuracy_.residual <= closed;
+}
+
+/// Of variables that are known with their motions and errors.
+void FlowTracker::finish_runs(std::span<const std::uint32_t> runs) {
+  for (const std::uint32_t i : runs) {
+    Run& run = places_.runs[i];
+    if (!run.unknown) places_.move_run(run);  // a block has moved its own
+    places_.take_errors(errors_, run);
+  }
 }
 
 void FlowTracker::place(std::uint32_t variable, double x) {
@@ -198,32 +232,32 @@ void FlowTracker::place(std::uint32_t variable, double x) {
   } else {
     (*q_)[variables_[variable].q] = x;
     bases_[variable].set_slide(x);
-    places_[variable].at[0] = x;
+    places_.variables[variable].at[0] = x;
   }
 }
 
 void FlowTracker::place_turn(std::uint32_t variable, double x, double cosine, double sine) {
   (*q_)[variables_[variable].q] = x;
   bases_[variable].set_turn(cosine, sine);
-  places_[variable].at = {cosine, sine, 0.0, 0.0};
+  places_.variables[variable].at = {cosine, sine, 0.0, 0.0};
 }
 
 void FlowTracker::place_ball(std::uint32_t variable, const Vector4& quaternion) {
   q_->segment<4>(variables_[variable].q) = quaternion;
-  std::copy(quaternion.begin(), quaternion.end(), places_[variable].at.begin());
+  std::copy(quaternion.begin(), quaternion.end(), places_.variables[variable].at.begin());
 }
 
 void FlowTracker::set_ball_motion(std::uint32_t variable, const Vector3& v, const Vector3& a) {
-  v_->segment<3>(variables_[variable].v) = places_[variable].rate = v;
-  a_->segment<3>(variables_[variable].v) = places_[variable].acceleration = a;
+  v_->segment<3>(variables_[variable].v) = places_.variables[variable].rate = v;
+  a_->segment<3>(variables_[variable].v) = places_.variables[variable].acceleration = a;
 }
 
 void FlowTracker::set_motion(std::uint32_t variable, double v, double a) {
   (*v_)[variables_[variable].v] = v;
   (*a_)[variables_[variable].v] = a;
   bases_[variable].set_motion(variables_[variable].kind, v, a);
-  places_[variable].rate[0] = v;
-  places_[variable].acceleration[0] = a;
+  places_.variables[variable].rate[0] = v;
+  places_.variables[variable].acceleration[0] = a;
 }
 
 void FlowTracker::take_error(std::uint32_t variable, double error) {

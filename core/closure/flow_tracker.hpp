@@ -12,8 +12,8 @@
 #include <Eigen/Core>
 
 #include "closure/flow.hpp"
-#include "closure/moving_walk.hpp"
 #include "closure/product_form.hpp"
+#include "closure/tracked_way.hpp"
 #include "mechanism/kinematics.hpp"
 #include "mechanism/mechanism.hpp"
 
@@ -52,7 +52,7 @@ class FlowTracker {
   struct Row {
     ClosureCondition condition;
     std::optional<ProductForm> form;
-    Way lower, upper;
+    TrackedWay lower, upper;
     std::array<double, 2> rigid{};  ///< the condition's values on ways without motions
   };
   struct Step {
@@ -60,11 +60,12 @@ class FlowTracker {
     std::vector<std::uint32_t> unknowns;
     std::vector<std::uint32_t> given;
     std::vector<Row> rows;
-    Way around;                 ///< of a joint: from behind it to before it
-    bool against = false;       ///< of a joint: its slide points against its turn
-    std::vector<bool> inverse;  ///< of a joint: of each unknown that is a ball
-    std::vector<int> column;    ///< of a block: of each variable the first column, -1: given or not there
-    Eigen::Index size = 0;      ///< of a block
+    TrackedWay around;                ///< of a joint: from behind it to before it
+    bool against = false;             ///< of a joint: its slide points against its turn
+    std::vector<bool> inverse;        ///< of a joint: of each unknown that is a ball
+    std::vector<int> column;          ///< of a block: of each variable the first column, -1: given or not there
+    Eigen::Index size = 0;            ///< of a block
+    std::vector<std::uint32_t> runs;  ///< known with it
   };
   static constexpr int most_unknowns = 12;  ///< rates of a block
   using BlockMatrix =
@@ -88,6 +89,7 @@ class FlowTracker {
 
   bool compile(const Flow& flow, const FlowStep& from, std::vector<Place<double>>& places, Step& step) const;
   void compile_joint(const Flow& flow, const FlowStep& from, Step& step) const;
+  void compile_runs();
 
   bool follow_steps(const Sides& sides);
   bool solve_one(const Step& step, std::int8_t side);
@@ -101,6 +103,12 @@ class FlowTracker {
   bool solve_block(const Step& step, std::int8_t side);
   template <typename Unknown>
   Linear linearise(const Row& row, const Unknown& unknown);
+  template <typename Unknown>
+  void linearise(const TrackedWay& way, const ConditionSlope<double>& slope, const Pose& end, const Unknown& unknown,
+                 Linear& at) const;
+  double walked_slope(const Row& row, std::uint32_t variable) const;
+  void place_runs(const Step& step);
+  void finish_runs(std::span<const std::uint32_t> runs);
   void linearise(const Step& step, BlockMatrix& jacobian, BlockLinear& at);
   void shift_block(const Step& step, const BlockVector& by);
   void set_block_motion(const Step& step, const BlockVector& v, const BlockVector& a);
@@ -128,13 +136,14 @@ class FlowTracker {
   std::vector<Step> steps_;
   // Of the call that is going on; of each variable.
   std::vector<CoordinateBasis> bases_;
-  std::vector<MovingPlace> places_;
+  TrackedPlaces places_;
   std::vector<double> errors_;  ///< [rad, m]
   const Mechanism* mechanism_ = nullptr;
   std::vector<Imaginary> imaginary_;
   Kinematics kinematics_;                    ///< tells where imaginary joints start
   std::array<Eigen::VectorXd, 3> extended_;  ///< q, v, a, those of imaginary joints behind the mechanism's
-  std::vector<WayColumn<double>> columns_;
+  std::vector<std::uint32_t> first_runs_;    ///< of inputs alone
+  std::vector<Pose> frames_;
   Eigen::VectorXd *q_ = nullptr, *v_ = nullptr, *a_ = nullptr;
   TrackedAccuracy accuracy_;
 };

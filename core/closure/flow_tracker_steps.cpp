@@ -40,11 +40,7 @@ double FlowTracker::error_through(const ProductForm& form, std::uint32_t unknown
 /// The condition's slope in a variable where that is placed, in radians or lengths.
 double FlowTracker::slope(const Row& row, std::uint32_t variable) {
   if (row.form) return unit(variable) * slope_in(row.form->last(bases_), bases_[variable]);
-  const WaySlope lower = koppel::slope(row.lower, places_, variable),
-                 upper = koppel::slope(row.upper, places_, variable);
-  return unit(variable) / size_of(row.condition, length_) *
-         (change(row.condition, lower.pose, lower.angular, lower.linear) -
-          change(row.condition, upper.pose, upper.angular, upper.linear));
+  return unit(variable) * walked_slope(row, variable);
 }
 
 /// Of several conditions that agree the one that is steepest where its unknown is placed.

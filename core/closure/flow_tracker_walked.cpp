@@ -24,40 +24,83 @@ constexpr double well_conditioned = 1e3;
 
 }  // namespace
 
-/// A condition where its variables stand. unknown(column, by): takes over the derivative by an unknown, per rad or m;
-/// false: it is none.
+/// A condition where its variables stand. unknown(variable, rate, by): takes over the derivative by an unknown, per rad
+/// or m; false: it is none.
 template <typename Unknown>
 FlowTracker::Linear FlowTracker::linearise(const Row& row, const Unknown& unknown) {
   const double over_size = 1.0 / size_of(row.condition, length_);
   Linear at;
-  double ball = 0.0;  // what a turn about any axis may do
   for (const bool upper : {false, true}) {
-    const Way& way = upper ? row.upper : row.lower;
+    const TrackedWay& way = upper ? row.upper : row.lower;
     const double sign = upper ? -over_size : over_size;
-    if (way.legs.empty()) {
+    if (way.pieces.empty()) {
       at.open += sign * row.rigid[upper];
       continue;
     }
-    columns_.clear();
-    Pose end;
-    for (const Leg& leg : way.legs) {
-      end = end * leg.to;
-      pass(leg, places_[leg.variable].at, end, &columns_);
-    }
-    end = end * way.last;
+    const Pose end = end_with_frames(way, places_, frames_);
     at.open += sign * value(row.condition, end);
-    for (const WayColumn<double>& c : columns_) {
-      const double by = sign * change(row.condition, end, c.angular, c.velocity(end.position));
-      if (unknown(c, by)) continue;
-      at.given += by * places_[c.variable].rate[c.rate];
-      ball = c.rate == 0 ? std::abs(by) : ball + std::abs(by);
-      // The greatest that comes through: errors have common causes.
-      at.uncertain = std::max(at.uncertain, ball * errors_[c.variable]);
-    }
+    ConditionSlope<double> slope = koppel::slope(row.condition, end);
+    slope.angular *= sign;
+    slope.linear *= sign;
+    linearise(way, slope, end, unknown, at);
   }
   constexpr double roundings = 8.0;
   at.uncertain += roundings * eps;
   return at;
+}
+
+/// What the pieces of one way do; slope: of the condition at its end. Of what is uncertain the greatest part counts:
+/// errors have common causes.
+template <typename Unknown>
+void FlowTracker::linearise(const TrackedWay& way, const ConditionSlope<double>& slope, const Pose& end,
+                            const Unknown& unknown, Linear& at) const {
+  for (std::size_t i = 0; i < way.pieces.size(); ++i) {
+    const Piece& piece = way.pieces[i];
+    const Matrix3& axes = frames_[i].rotation;
+    // Of turning about the piece's own point.
+    const Vector3 moment = slope.angular + (end.position - frames_[i].position).cross(slope.linear);
+    if (piece.kind == Piece::Kind::run) {
+      const Run& run = places_.runs[piece.index];
+      const double sign = piece.inverse ? -1.0 : 1.0;
+      const Vector3 turned = sign * (axes.transpose() * moment), shifted = sign * (axes.transpose() * slope.linear);
+      if (run.unknown && unknown(run.screws.front().variable, 0, 0.0)) {
+        for (const RunScrew& screw : run.screws) {
+          unknown(screw.variable, screw.rate, screw.angular.dot(turned) + screw.linear.dot(shifted));
+        }
+        continue;
+      }
+      const MovingPose& moving = run.forwards;
+      const Vector3 about_end = turned - moving.pose.position.cross(shifted);
+      at.given += moving.angular_velocity.dot(about_end) + moving.velocity.dot(shifted);
+      at.uncertain = std::max({at.uncertain, about_end.norm() * run.turn_error, shifted.norm() * run.shift_error});
+      continue;
+    }
+    const MovingPlace& place = places_.variables[piece.index];
+    if (piece.kind == Piece::Kind::ball) {
+      const Vector3 by = (piece.inverse ? -1.0 : 1.0) * (axes.transpose() * moment);
+      if (unknown(piece.index, 0, by[0])) {
+        unknown(piece.index, 1, by[1]);
+        unknown(piece.index, 2, by[2]);
+        continue;
+      }
+      at.given += by.dot(place.rate);
+      at.uncertain = std::max(at.uncertain, by.lpNorm<1>() * errors_[piece.index]);
+      continue;
+    }
+    const double by = axes.col(2).dot(piece.kind == Piece::Kind::turn ? moment : slope.linear);
+    if (unknown(piece.index, 0, by)) continue;
+    at.given += by * place.rate[0];
+    at.uncertain = std::max(at.uncertain, std::abs(by) * errors_[piece.index]);
+  }
+}
+
+/// The condition's slope in a variable where that is placed, per rad or m.
+double FlowTracker::walked_slope(const Row& row, std::uint32_t variable) const {
+  const WaySlope lower = koppel::slope(row.lower, places_, variable),
+                 upper = koppel::slope(row.upper, places_, variable);
+  return (change(row.condition, lower.pose, lower.angular, lower.linear) -
+          change(row.condition, upper.pose, upper.angular, upper.linear)) /
+         size_of(row.condition, length_);
 }
 
 bool FlowTracker::solve_walk(const Row& row, std::uint32_t x, double& slope) {
@@ -65,9 +108,9 @@ bool FlowTracker::solve_walk(const Row& row, std::uint32_t x, double& slope) {
   if (!(harmonic ? solve_harmonic(row, x) : solve_by_slopes(row, x))) return false;
   const double unit = this->unit(x);
   slope = 0.0;
-  const Linear at = linearise(row, [&](const WayColumn<double>& c, double by) {
-    if (c.variable == x) slope += unit * by;
-    return c.variable == x;
+  const Linear at = linearise(row, [&](std::uint32_t variable, std::uint8_t, double by) {
+    if (variable == x) slope += unit * by;
+    return variable == x;
   });
   if (!(std::abs(slope) > least_slope)) return false;
   place(x, (*q_)[variables_[x].q] - unit * at.open / slope);  // what rounding has left
@@ -85,8 +128,8 @@ bool FlowTracker::solve_harmonic(const Row& row, std::uint32_t x) {
   std::array<double, 3> f{};
   for (const bool upper : {false, true}) {
     const double over_size = (upper ? -1.0 : 1.0) / size_of(row.condition, length_);
-    const Way& way = upper ? row.upper : row.lower;
-    if (way.legs.empty()) {
+    const TrackedWay& way = upper ? row.upper : row.lower;
+    if (way.pieces.empty()) {
       f[0] += over_size * row.rigid[upper];
       continue;
     }
@@ -135,11 +178,12 @@ bool FlowTracker::solve_by_slopes(const Row& row, std::uint32_t x) {
 void FlowTracker::linearise(const Step& step, BlockMatrix& jacobian, BlockLinear& at) {
   jacobian.setZero();
   for (Eigen::Index k = 0; k < step.size; ++k) {
-    const Linear row = linearise(step.rows[static_cast<std::size_t>(k)], [&](const WayColumn<double>& c, double by) {
-      const int column = step.column[c.variable];
-      if (column >= 0) jacobian(k, column + c.rate) += unit(c.variable) * by;
-      return column >= 0;
-    });
+    const Linear row =
+        linearise(step.rows[static_cast<std::size_t>(k)], [&](std::uint32_t x, std::uint8_t rate, double by) {
+          const int column = step.column[x];
+          if (column >= 0) jacobian(k, column + rate) += unit(x) * by;
+          return column >= 0;
+        });
     at.open[k] = row.open;
     at.given[k] = row.given;
     at.uncertain[k] = row.uncertain;
@@ -156,6 +200,14 @@ void FlowTracker::shift_block(const Step& step, const BlockVector& by) {
     const Vector4 turn = quaternion_of_rotation_vector<double>(Vector3(by.segment<3>(column)));
     place_ball(x, quaternion_product<double>(q_->segment<4>(variables_[x].q), turn).normalized());
   }
+  place_runs(step);
+}
+
+/// Those that the block's own unknowns make.
+void FlowTracker::place_runs(const Step& step) {
+  for (const std::uint32_t i : step.runs) {
+    if (places_.runs[i].unknown) places_.place_run(places_.runs[i]);
+  }
 }
 
 void FlowTracker::set_block_motion(const Step& step, const BlockVector& v, const BlockVector& a) {
@@ -167,17 +219,20 @@ void FlowTracker::set_block_motion(const Step& step, const BlockVector& v, const
       set_motion(x, unit(x) * v[column], unit(x) * a[column]);
     }
   }
+  for (const std::uint32_t i : step.runs) {
+    if (places_.runs[i].unknown) places_.move_run(places_.runs[i]);
+  }
 }
 
 /// The second time derivative of a condition, by the motions as they are set.
 double FlowTracker::bending(const Row& row) {
-  const auto of_way = [&](const Way& way) {
+  const auto of_way = [&](const TrackedWay& way) {
     const MovingPose p = moving_end(way, places_);
     return change(row.condition, p.pose, p.angular_acceleration, p.acceleration) +
            quadratic_change(row.condition, p.pose, p.angular_velocity, p.velocity);
   };
-  const double lower = row.lower.legs.empty() ? 0.0 : of_way(row.lower);
-  const double upper = row.upper.legs.empty() ? 0.0 : of_way(row.upper);
+  const double lower = row.lower.pieces.empty() ? 0.0 : of_way(row.lower);
+  const double upper = row.upper.pieces.empty() ? 0.0 : of_way(row.upper);
   return (lower - upper) / size_of(row.condition, length_);
 }
 
@@ -193,6 +248,7 @@ bool FlowTracker::solve_block(const Step& step, std::int8_t side) {
       place(x, (*q_)[variables_[x].q]);
     }
   }
+  place_runs(step);
   double moved = 0.0, last = 1.0;
   for (int i = 0;; ++i) {
     linearise(step, jacobian, at);

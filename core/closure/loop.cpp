@@ -11,13 +11,13 @@ namespace koppel {
 namespace {
 
 /// A frame whose z axis is that of the motion, and its opposite for a motion that is passed backwards: then the
-/// coordinate counts as it does forwards.
+/// coordinate counts as it does forwards. The two differ by half a turn about x.
 Pose frame_of(const ElementaryMotion& motion, bool reversed) {
   Pose frame;
   frame.position = motion.point;
   if (motion.kind != ElementaryMotionKind::free_rotation) {
-    const Vector3 z = reversed ? Vector3(-motion.axis) : motion.axis;
-    frame.rotation << tangents<double>(z), z;
+    frame.rotation << tangents<double>(motion.axis), motion.axis;
+    if (reversed) frame.rotation.rightCols<2>() *= -1.0;
   }
   return frame;
 }

@@ -132,16 +132,13 @@ void FlowTracker::compile_runs() {
     if (step.kind == StepKind::joint) ways.push_back({&step.around, {}, 1});
   }
   places_.runs = share_runs(ways);
-  std::size_t most = 0;
-  for (const WayOfStep& way : ways) most = std::max(most, way.way->pieces.size());
-  frames_.reserve(most);
   std::vector<std::size_t> known_after(variables_.size(), 0);  // steps
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     for (const std::uint32_t x : steps_[i].unknowns) known_after[x] = i + 1;
   }
   for (std::uint32_t i = 0; i < places_.runs.size(); ++i) {
     std::size_t after = 0;
-    for (const Piece& piece : places_.runs[i].motions) after = std::max(after, known_after[piece.index]);
+    for (const Piece& piece : places_.runs[i].way.pieces) after = std::max(after, known_after[piece.index]);
     (after == 0 ? first_runs_ : steps_[after - 1].runs).push_back(i);
   }
 }
@@ -158,7 +155,7 @@ void FlowTracker::find_sides(const Eigen::VectorXd& q, Sides& sides) {
       place(i, all[variables_[i].q]);
     }
   }
-  for (Run& run : places_.runs) places_.place_run(run);
+  for (Run& run : places_.runs) places_.place(run);
   for (std::size_t i = 0; i < steps_.size(); ++i) sides[i] = side_of(steps_[i]);
 }
 
@@ -197,7 +194,7 @@ bool FlowTracker::follow_steps(const Sides& sides) {
   }
   finish_runs(first_runs_);
   for (std::size_t i = 0; i < steps_.size(); ++i) {
-    const Step& step = steps_[i];
+    Step& step = steps_[i];
     switch (step.kind) {
       case StepKind::one_unknown:
         if (!solve_one(step, sides[i])) return false;
@@ -221,7 +218,10 @@ bool FlowTracker::follow_steps(const Sides& sides) {
 void FlowTracker::finish_runs(std::span<const std::uint32_t> runs) {
   for (const std::uint32_t i : runs) {
     Run& run = places_.runs[i];
-    if (!run.unknown) places_.move_run(run);  // a block has moved its own
+    if (!run.unknown) {  // a block has moved its own
+      places_.place(run);
+      places_.move(run);
+    }
     places_.take_errors(errors_, run);
   }
 }

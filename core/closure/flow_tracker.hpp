@@ -92,35 +92,34 @@ class FlowTracker {
   void compile_runs();
 
   bool follow_steps(const Sides& sides);
-  bool solve_one(const Step& step, std::int8_t side);
+  bool solve_one(Step& step, std::int8_t side);
   bool solve_turn(const LastVariable& form, std::uint32_t variable);
   bool solve_slide(const LastVariable& form, std::uint32_t variable);
   bool solve_form(const Row& row, std::uint32_t variable, double& slope);
-  bool solve_walk(const Row& row, std::uint32_t variable, double& slope);
-  bool solve_harmonic(const Row& row, std::uint32_t variable);
-  bool solve_by_slopes(const Row& row, std::uint32_t variable);
+  bool solve_walk(Row& row, std::uint32_t variable, double& slope);
+  bool solve_harmonic(Row& row, std::uint32_t variable);
+  bool solve_by_slopes(Row& row, std::uint32_t variable);
   bool solve_two(const Step& step, std::int8_t side);
-  bool solve_block(const Step& step, std::int8_t side);
+  bool solve_block(Step& step, std::int8_t side);
   template <typename Unknown>
-  Linear linearise(const Row& row, const Unknown& unknown);
+  Linear linearise(Row& row, const Unknown& unknown);
   template <typename Unknown>
-  void linearise(const TrackedWay& way, const ConditionSlope<double>& slope, const Pose& end, const Unknown& unknown,
-                 Linear& at) const;
-  double walked_slope(const Row& row, std::uint32_t variable) const;
+  void linearise(const TrackedWay& way, const ConditionSlope<double>& slope, const Unknown& unknown, Linear& at) const;
+  double walked_slope(Row& row, std::uint32_t variable) const;
   void place_runs(const Step& step);
   void finish_runs(std::span<const std::uint32_t> runs);
-  void linearise(const Step& step, BlockMatrix& jacobian, BlockLinear& at);
+  void linearise(Step& step, BlockMatrix& jacobian, BlockLinear& at);
   void shift_block(const Step& step, const BlockVector& by);
   void set_block_motion(const Step& step, const BlockVector& v, const BlockVector& a);
   double bending(const Row& row);
   void start_imaginary();
-  std::int8_t side_of(const Step& step);
+  std::int8_t side_of(Step& step);
   Eigen::Matrix2d jacobian_of(const Step& step) const;
-  std::size_t steepest(const Step& step);
-  void read_joint(const Step& step);
-  void read_ball(const MovingPose& before, bool inverse, std::uint32_t variable);
+  std::size_t steepest(Step& step);
+  void read_joint(Step& step);
+  void read_ball(const Pose& before, const WayMotion& motion, bool inverse, std::uint32_t variable);
 
-  double slope(const Row& row, std::uint32_t variable);
+  double slope(Row& row, std::uint32_t variable);
   void place(std::uint32_t variable, double x);
   void place_turn(std::uint32_t variable, double x, double cosine, double sine);
   void place_ball(std::uint32_t variable, const Vector4& quaternion);
@@ -143,7 +142,6 @@ class FlowTracker {
   Kinematics kinematics_;                    ///< tells where imaginary joints start
   std::array<Eigen::VectorXd, 3> extended_;  ///< q, v, a, those of imaginary joints behind the mechanism's
   std::vector<std::uint32_t> first_runs_;    ///< of inputs alone
-  std::vector<Pose> frames_;
   Eigen::VectorXd *q_ = nullptr, *v_ = nullptr, *a_ = nullptr;
   TrackedAccuracy accuracy_;
 };

@@ -38,13 +38,13 @@ double FlowTracker::error_through(const ProductForm& form, std::uint32_t unknown
 }
 
 /// The condition's slope in a variable where that is placed, in radians or lengths.
-double FlowTracker::slope(const Row& row, std::uint32_t variable) {
+double FlowTracker::slope(Row& row, std::uint32_t variable) {
   if (row.form) return unit(variable) * slope_in(row.form->last(bases_), bases_[variable]);
   return unit(variable) * walked_slope(row, variable);
 }
 
 /// Of several conditions that agree the one that is steepest where its unknown is placed.
-std::size_t FlowTracker::steepest(const Step& step) {
+std::size_t FlowTracker::steepest(Step& step) {
   std::size_t best = 0;
   double greatest = -1.0;
   for (std::size_t k = 0; k < step.rows.size() && step.rows.size() > 1; ++k) {
@@ -56,7 +56,7 @@ std::size_t FlowTracker::steepest(const Step& step) {
   return best;
 }
 
-std::int8_t FlowTracker::side_of(const Step& step) {
+std::int8_t FlowTracker::side_of(Step& step) {
   const auto coded = [](double x, std::size_t row) {
     const auto number = static_cast<std::int8_t>(row + 1);
     return x < 0.0 ? static_cast<std::int8_t>(-number) : number;
@@ -79,11 +79,11 @@ std::int8_t FlowTracker::side_of(const Step& step) {
   return 1;
 }
 
-bool FlowTracker::solve_one(const Step& step, std::int8_t side) {
+bool FlowTracker::solve_one(Step& step, std::int8_t side) {
   const std::uint32_t x = step.unknowns[0];
   place(x, (*q_)[variables_[x].q]);
   // The one that was steepest when the motion came here: another would have sides of its own.
-  const Row& best = step.rows[static_cast<std::size_t>(std::abs(side)) - 1];
+  Row& best = step.rows[static_cast<std::size_t>(std::abs(side)) - 1];
   errors_[x] = 0.0;
   double slope_here = 0.0;
   if (!(best.form ? solve_form(best, x, slope_here) : solve_walk(best, x, slope_here))) return false;
@@ -212,8 +212,10 @@ bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
 }
 
 /// The walk leads from behind the joint to before it, so that it shows the joint's motion backwards.
-void FlowTracker::read_joint(const Step& step) {
-  const MovingPose before = moving_end(step.around, places_);
+void FlowTracker::read_joint(Step& step) {
+  places_.place(step.around);
+  const Pose& before = step.around.end;
+  const WayMotion motion = places_.motion(step.around);
   // What the worst of the given coordinates leaves.
   double error = 32.0 * eps;
   for (const std::uint32_t v : step.given) {
@@ -223,21 +225,21 @@ void FlowTracker::read_joint(const Step& step) {
     const std::uint32_t x = step.unknowns[i];
     switch (variables_[x].kind) {
       case VariableKind::turn: {
-        const Matrix3& r = before.pose.rotation;
+        const Matrix3& r = before.rotation;
         const double cosine = r(0, 0) + r(1, 1), sine = r(0, 1) - r(1, 0);
         const double start = (*q_)[variables_[x].q], angle = std::atan2(sine, cosine);
         const double size = std::sqrt(cosine * cosine + sine * sine);
         place_turn(x, start + std::remainder(angle - start, 2.0 * std::numbers::pi), cosine / size, sine / size);
-        set_motion(x, -before.angular_velocity.z(), -before.angular_acceleration.z());
+        set_motion(x, -motion.twist.angular.z(), -motion.rate.angular.z());
         break;
       }
       case VariableKind::slide: {
         const double sign = step.against ? 1.0 : -1.0;
-        place(x, sign * before.pose.position.z());
-        set_motion(x, sign * before.velocity.z(), sign * before.acceleration.z());
+        place(x, sign * before.position.z());
+        set_motion(x, sign * motion.velocity(before.position).z(), sign * motion.acceleration(before.position).z());
         break;
       }
-      case VariableKind::ball: read_ball(before, step.inverse[i], x); break;
+      case VariableKind::ball: read_ball(before, motion, step.inverse[i], x); break;
     }
     take_error(x, error);
   }
@@ -245,17 +247,17 @@ void FlowTracker::read_joint(const Step& step) {
 
 /// Quaternion, angular velocity and acceleration in the axes of the ball's outlet: that is behind the joint, or before
 /// it if the loop passes it backwards.
-void FlowTracker::read_ball(const MovingPose& before, bool inverse, std::uint32_t x) {
+void FlowTracker::read_ball(const Pose& before, const WayMotion& motion, bool inverse, std::uint32_t x) {
   const Variable& variable = variables_[x];
-  const Matrix3 to_outlet = inverse ? Matrix3(before.pose.rotation) : Matrix3(before.pose.rotation.transpose());
+  const Matrix3 to_outlet = inverse ? Matrix3(before.rotation) : Matrix3(before.rotation.transpose());
   Vector4 quaternion = quaternion_of_rotation<double>(to_outlet);
   if (quaternion.dot(q_->segment<4>(variable.q)) < 0.0) quaternion = -quaternion;
   place_ball(x, quaternion);
   if (inverse) {
-    set_ball_motion(x, before.pose.rotation.transpose() * before.angular_velocity,
-                    before.pose.rotation.transpose() * before.angular_acceleration);
+    set_ball_motion(x, before.rotation.transpose() * motion.twist.angular,
+                    before.rotation.transpose() * motion.rate.angular);
   } else {
-    set_ball_motion(x, -before.angular_velocity, -before.angular_acceleration);
+    set_ball_motion(x, -motion.twist.angular, -motion.rate.angular);
   }
 }
 

@@ -27,22 +27,22 @@ constexpr double well_conditioned = 1e3;
 /// A condition where its variables stand. unknown(variable, rate, by): takes over the derivative by an unknown, per rad
 /// or m; false: it is none.
 template <typename Unknown>
-FlowTracker::Linear FlowTracker::linearise(const Row& row, const Unknown& unknown) {
+FlowTracker::Linear FlowTracker::linearise(Row& row, const Unknown& unknown) {
   const double over_size = 1.0 / size_of(row.condition, length_);
   Linear at;
   for (const bool upper : {false, true}) {
-    const TrackedWay& way = upper ? row.upper : row.lower;
+    TrackedWay& way = upper ? row.upper : row.lower;
     const double sign = upper ? -over_size : over_size;
     if (way.pieces.empty()) {
       at.open += sign * row.rigid[upper];
       continue;
     }
-    const Pose end = end_with_frames(way, places_, frames_);
-    at.open += sign * value(row.condition, end);
-    ConditionSlope<double> slope = koppel::slope(row.condition, end);
+    places_.place(way);
+    at.open += sign * value(row.condition, way.end);
+    ConditionSlope<double> slope = koppel::slope(row.condition, way.end);
     slope.angular *= sign;
     slope.linear *= sign;
-    linearise(way, slope, end, unknown, at);
+    linearise(way, slope, unknown, at);
   }
   constexpr double roundings = 8.0;
   at.uncertain += roundings * eps;
@@ -52,32 +52,31 @@ FlowTracker::Linear FlowTracker::linearise(const Row& row, const Unknown& unknow
 /// What the pieces of one way do; slope: of the condition at its end. Of what is uncertain the greatest part counts:
 /// errors have common causes.
 template <typename Unknown>
-void FlowTracker::linearise(const TrackedWay& way, const ConditionSlope<double>& slope, const Pose& end,
-                            const Unknown& unknown, Linear& at) const {
+void FlowTracker::linearise(const TrackedWay& way, const ConditionSlope<double>& slope, const Unknown& unknown,
+                            Linear& at) const {
   for (std::size_t i = 0; i < way.pieces.size(); ++i) {
     const Piece& piece = way.pieces[i];
-    const Matrix3& axes = frames_[i].rotation;
+    const Matrix3& axes = way.frames[i].rotation;
+    const double sign = piece.inverse ? -1.0 : 1.0;
     // Of turning about the piece's own point.
-    const Vector3 moment = slope.angular + (end.position - frames_[i].position).cross(slope.linear);
+    const Vector3 moment = slope.angular + (way.end.position - way.frames[i].position).cross(slope.linear);
     if (piece.kind == Piece::Kind::run) {
       const Run& run = places_.runs[piece.index];
-      const double sign = piece.inverse ? -1.0 : 1.0;
-      const Vector3 turned = sign * (axes.transpose() * moment), shifted = sign * (axes.transpose() * slope.linear);
+      const ConditionSlope<double> local{sign * (axes.transpose() * moment), sign * (axes.transpose() * slope.linear)};
       if (run.unknown && unknown(run.screws.front().variable, 0, 0.0)) {
         for (const RunScrew& screw : run.screws) {
-          unknown(screw.variable, screw.rate, screw.angular.dot(turned) + screw.linear.dot(shifted));
+          unknown(screw.variable, screw.rate, local.along(screw.twist.angular, screw.twist.linear));
         }
         continue;
       }
-      const MovingPose& moving = run.forwards;
-      const Vector3 about_end = turned - moving.pose.position.cross(shifted);
-      at.given += moving.angular_velocity.dot(about_end) + moving.velocity.dot(shifted);
-      at.uncertain = std::max({at.uncertain, about_end.norm() * run.turn_error, shifted.norm() * run.shift_error});
+      at.given += local.along(run.motion.twist.angular, run.motion.twist.linear);
+      const Vector3 about_end = local.angular - run.way.end.position.cross(local.linear);
+      at.uncertain = std::max({at.uncertain, about_end.norm() * run.turn_error, local.linear.norm() * run.shift_error});
       continue;
     }
     const MovingPlace& place = places_.variables[piece.index];
     if (piece.kind == Piece::Kind::ball) {
-      const Vector3 by = (piece.inverse ? -1.0 : 1.0) * (axes.transpose() * moment);
+      const Vector3 by = sign * (axes.transpose() * moment);
       if (unknown(piece.index, 0, by[0])) {
         unknown(piece.index, 1, by[1]);
         unknown(piece.index, 2, by[2]);
@@ -95,15 +94,17 @@ void FlowTracker::linearise(const TrackedWay& way, const ConditionSlope<double>&
 }
 
 /// The condition's slope in a variable where that is placed, per rad or m.
-double FlowTracker::walked_slope(const Row& row, std::uint32_t variable) const {
-  const WaySlope lower = koppel::slope(row.lower, places_, variable),
-                 upper = koppel::slope(row.upper, places_, variable);
-  return (change(row.condition, lower.pose, lower.angular, lower.linear) -
-          change(row.condition, upper.pose, upper.angular, upper.linear)) /
-         size_of(row.condition, length_);
+double FlowTracker::walked_slope(Row& row, std::uint32_t variable) const {
+  const auto of_way = [&](TrackedWay& way) {
+    if (way.pieces.empty()) return 0.0;
+    places_.place(way);
+    const Twist by = screw(way, variable);
+    return change(row.condition, way.end, by.angular, velocity_at(by, way.end.position));
+  };
+  return (of_way(row.lower) - of_way(row.upper)) / size_of(row.condition, length_);
 }
 
-bool FlowTracker::solve_walk(const Row& row, std::uint32_t x, double& slope) {
+bool FlowTracker::solve_walk(Row& row, std::uint32_t x, double& slope) {
   const bool harmonic = row.condition.type != ClosureType::point_line || variables_[x].kind == VariableKind::slide;
   if (!(harmonic ? solve_harmonic(row, x) : solve_by_slopes(row, x))) return false;
   const double unit = this->unit(x);
@@ -124,20 +125,23 @@ bool FlowTracker::solve_walk(const Row& row, std::uint32_t x, double& slope) {
 }
 
 /// A condition is a harmonic of a turn, or a parabola of a slide: value, slope and second derivative tell all of it.
-bool FlowTracker::solve_harmonic(const Row& row, std::uint32_t x) {
+bool FlowTracker::solve_harmonic(Row& row, std::uint32_t x) {
   std::array<double, 3> f{};
   for (const bool upper : {false, true}) {
     const double over_size = (upper ? -1.0 : 1.0) / size_of(row.condition, length_);
-    const TrackedWay& way = upper ? row.upper : row.lower;
+    TrackedWay& way = upper ? row.upper : row.lower;
     if (way.pieces.empty()) {
       f[0] += over_size * row.rigid[upper];
       continue;
     }
-    const WaySlope at = koppel::slope(way, places_, x);
-    f[0] += over_size * value(row.condition, at.pose);
-    f[1] += over_size * change(row.condition, at.pose, at.angular, at.linear);
-    f[2] += over_size * (change(row.condition, at.pose, Vector3::Zero().eval(), at.angular.cross(at.linear).eval()) +
-                         quadratic_change(row.condition, at.pose, at.angular, at.linear));
+    places_.place(way);
+    const Twist by = screw(way, x);
+    const ConditionSlope<double> slope = koppel::slope(row.condition, way.end);
+    const Vector3 linear = velocity_at(by, way.end.position);
+    f[0] += over_size * value(row.condition, way.end);
+    f[1] += over_size * slope.along(by.angular, linear);
+    f[2] += over_size *
+            (slope.linear.dot(by.angular.cross(linear)) + quadratic_change(row.condition, way.end, by.angular, linear));
   }
   LastVariable form;
   if (variables_[x].kind == VariableKind::turn) {
@@ -151,15 +155,15 @@ bool FlowTracker::solve_harmonic(const Row& row, std::uint32_t x) {
 }
 
 /// Newton's method; as long as the slope hardly changes, the start belongs to this root.
-bool FlowTracker::solve_by_slopes(const Row& row, std::uint32_t x) {
+bool FlowTracker::solve_by_slopes(Row& row, std::uint32_t x) {
   const double unit = this->unit(x), size = size_of(row.condition, length_);
   double first_slope = 0.0, moved = 0.0, last = 1.0;
   for (int i = 0; i < most_iterations; ++i) {
-    const WaySlope lower = koppel::slope(row.lower, places_, x), upper = koppel::slope(row.upper, places_, x);
-    const double open = (value(row.condition, lower.pose) - value(row.condition, upper.pose)) / size;
-    const double slope = unit / size *
-                         (change(row.condition, lower.pose, lower.angular, lower.linear) -
-                          change(row.condition, upper.pose, upper.angular, upper.linear));
+    const double slope = unit * walked_slope(row, x);
+    const auto value_of = [&](const TrackedWay& way, double rigid) {
+      return way.pieces.empty() ? rigid : value(row.condition, way.end);
+    };
+    const double open = (value_of(row.lower, row.rigid[0]) - value_of(row.upper, row.rigid[1])) / size;
     if (i == 0) first_slope = slope;
     if (!(std::abs(slope) > least_slope) || std::abs(slope - first_slope) > surely_nearest * std::abs(first_slope)) {
       return false;
@@ -175,7 +179,7 @@ bool FlowTracker::solve_by_slopes(const Row& row, std::uint32_t x) {
 }
 
 /// Of all conditions of a block by its unknowns, in radians or lengths.
-void FlowTracker::linearise(const Step& step, BlockMatrix& jacobian, BlockLinear& at) {
+void FlowTracker::linearise(Step& step, BlockMatrix& jacobian, BlockLinear& at) {
   jacobian.setZero();
   for (Eigen::Index k = 0; k < step.size; ++k) {
     const Linear row =
@@ -206,7 +210,7 @@ void FlowTracker::shift_block(const Step& step, const BlockVector& by) {
 /// Those that the block's own unknowns make.
 void FlowTracker::place_runs(const Step& step) {
   for (const std::uint32_t i : step.runs) {
-    if (places_.runs[i].unknown) places_.place_run(places_.runs[i]);
+    if (places_.runs[i].unknown) places_.place(places_.runs[i]);
   }
 }
 
@@ -220,23 +224,23 @@ void FlowTracker::set_block_motion(const Step& step, const BlockVector& v, const
     }
   }
   for (const std::uint32_t i : step.runs) {
-    if (places_.runs[i].unknown) places_.move_run(places_.runs[i]);
+    if (places_.runs[i].unknown) places_.move(places_.runs[i]);
   }
 }
 
-/// The second time derivative of a condition, by the motions as they are set.
+/// The second time derivative of a condition whose ways are placed, by the motions as they are set.
 double FlowTracker::bending(const Row& row) {
   const auto of_way = [&](const TrackedWay& way) {
-    const MovingPose p = moving_end(way, places_);
-    return change(row.condition, p.pose, p.angular_acceleration, p.acceleration) +
-           quadratic_change(row.condition, p.pose, p.angular_velocity, p.velocity);
+    if (way.pieces.empty()) return 0.0;
+    const WayMotion motion = places_.motion(way);
+    const Vector3& p = way.end.position;
+    return change(row.condition, way.end, motion.rate.angular, motion.acceleration(p)) +
+           quadratic_change(row.condition, way.end, motion.twist.angular, motion.velocity(p));
   };
-  const double lower = row.lower.pieces.empty() ? 0.0 : of_way(row.lower);
-  const double upper = row.upper.pieces.empty() ? 0.0 : of_way(row.upper);
-  return (lower - upper) / size_of(row.condition, length_);
+  return (of_way(row.lower) - of_way(row.upper)) / size_of(row.condition, length_);
 }
 
-bool FlowTracker::solve_block(const Step& step, std::int8_t side) {
+bool FlowTracker::solve_block(Step& step, std::int8_t side) {
   BlockMatrix jacobian(step.size, step.size);
   BlockLinear at(step.size);
   BlockVector change(step.size);

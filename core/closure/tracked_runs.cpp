@@ -123,7 +123,7 @@ std::optional<Sharing::Found> Sharing::longest(Pieces pieces) const {
     const auto& [run, inverse, count] = found->second;
     if (count > pieces.size() || (result && result->count >= count)) continue;
     const Pieces part = pieces.first(count);
-    const std::vector<Piece>& motions = runs[run].motions;
+    const std::vector<Piece>& motions = runs[run].way.pieces;
     if (inverse ? same_motions(part, backwards(motions)) : same_motions(part, motions)) result = found->second;
   }
   return result;
@@ -156,7 +156,9 @@ void Sharing::choose() {
     by_end_.insert({candidate->motions.front().index, {number, false, size}});
     by_end_.insert({candidate->motions.back().index, {number, true, size}});
     Run run;
-    run.motions = std::move(candidate->motions);
+    run.way.pieces = std::move(candidate->motions);
+    run.way.frames.resize(size);
+    run.screws.reserve(3 * size);
     runs.push_back(std::move(run));
   }
 }
@@ -189,6 +191,7 @@ void Sharing::replace(const Stretch& stretch) {
   next = before * next;
   replaced.insert(replaced.end(), way.pieces.begin() + static_cast<std::ptrdiff_t>(end), way.pieces.end());
   way.pieces = std::move(replaced);
+  way.frames.resize(way.pieces.size());
 }
 
 }  // namespace
@@ -204,7 +207,6 @@ std::vector<Run> share_runs(std::span<const WayOfStep> ways) {
     // From the end, so that the numbers of what is left stay.
     std::for_each(stretches.rbegin(), stretches.rend(), [&](const Stretch& s) { sharing.replace(s); });
   }
-  for (Run& run : sharing.runs) run.screws.reserve(3 * run.motions.size());
   return std::move(sharing.runs);
 }
 

@@ -18,60 +18,6 @@ Pose turned_round_before(Pose frame) {
   return frame;
 }
 
-/// Carries a moving frame over a constant transformation.
-void carry(const Pose& to, MovingPose& at) {
-  const Vector3 d = at.pose.rotation * to.position;
-  const Vector3 swept = at.angular_velocity.cross(d);
-  at.pose.position += d;
-  at.velocity += swept;
-  at.acceleration += at.angular_acceleration.cross(d) + at.angular_velocity.cross(swept);
-  at.pose.rotation = (at.pose.rotation * to.rotation).eval();
-}
-
-/// Turns with a rate about an axis that the frame carries along.
-void turn(const Vector3& rate, const Vector3& acceleration, MovingPose& at) {
-  at.angular_acceleration += acceleration + at.angular_velocity.cross(rate);
-  at.angular_velocity += rate;
-}
-
-void slide(double d, double rate, double acceleration, MovingPose& at) {
-  const Vector3 z = at.pose.rotation.col(2), swept = at.angular_velocity.cross(z);
-  at.pose.position += d * z;
-  at.velocity += rate * z + d * swept;
-  at.acceleration +=
-      acceleration * z + 2.0 * rate * swept + d * (at.angular_acceleration.cross(z) + at.angular_velocity.cross(swept));
-}
-
-/// Carries a moving frame over a moving transformation.
-void carry(const MovingPose& to, MovingPose& at) {
-  const Matrix3& r = at.pose.rotation;
-  const Vector3 d = r * to.pose.position, velocity = r * to.velocity;
-  const Vector3 rate = r * to.angular_velocity, acceleration = r * to.angular_acceleration;
-  const Vector3 swept = at.angular_velocity.cross(d);
-  at.pose.position += d;
-  at.velocity += swept + velocity;
-  at.acceleration +=
-      at.angular_acceleration.cross(d) + at.angular_velocity.cross(swept + 2.0 * velocity) + r * to.acceleration;
-  turn(rate, acceleration, at);
-  at.pose.rotation = (r * to.pose.rotation).eval();
-}
-
-MovingPose inverse(const MovingPose& x) {
-  MovingPose result;
-  result.pose = x.pose.inverse();
-  const Matrix3& r = result.pose.rotation;
-  const Vector3& w = x.angular_velocity;
-  // How the start moves, seen from the end: of a point that rests in the start, in axes that turn with the end.
-  const Vector3 p = -x.pose.position, relative = -x.velocity - w.cross(p);
-  const Vector3 relative_acceleration =
-      -x.acceleration - x.angular_acceleration.cross(p) - w.cross(w.cross(p)) - 2.0 * w.cross(relative);
-  result.angular_velocity = -(r * w);
-  result.velocity = r * relative;
-  result.angular_acceleration = -(r * x.angular_acceleration);
-  result.acceleration = r * relative_acceleration;
-  return result;
-}
-
 VariableKind kind_of(const Piece& piece) {
   switch (piece.kind) {
     case Piece::Kind::slide: return VariableKind::slide;
@@ -94,39 +40,43 @@ Piece::Kind kind_of(VariableKind kind) {
 void pass(const Piece& piece, const TrackedPlaces& places, Pose& at) {
   if (piece.kind == Piece::Kind::run) {
     const Run& run = places.runs[piece.index];
-    at = at * (piece.inverse ? run.backwards : run.forwards).pose;
+    at = at * (piece.inverse ? run.backwards : run.way.end);
   } else {
     apply(kind_of(piece), places.variables[piece.index].at, piece.inverse, at);
   }
 }
 
-void pass(const Piece& piece, const TrackedPlaces& places, MovingPose& at) {
+/// What turns about an axis, or slides along it, does about the origin.
+Twist turn_about(const Pose& frame, const Vector3& rate) { return {rate, frame.position.cross(rate)}; }
+Twist slide_along(const Vector3& rate) { return {Vector3::Zero(), rate}; }
+
+/// What one piece does, its frame being given; and how it changes by its own motion alone.
+WayMotion motion_of(const Piece& piece, const TrackedPlaces& places, const Pose& frame) {
+  const double sign = piece.inverse ? -1.0 : 1.0;
   if (piece.kind == Piece::Kind::run) {
-    const Run& run = places.runs[piece.index];
-    carry(piece.inverse ? run.backwards : run.forwards, at);
-    return;
+    const WayMotion& motion = places.runs[piece.index].motion;
+    return {transformed(frame, sign * motion.twist), transformed(frame, sign * motion.rate)};
   }
   const MovingPlace& place = places.variables[piece.index];
   switch (kind_of(piece)) {
-    case VariableKind::turn: {
-      const Vector3 axis = at.pose.rotation.col(2);
-      apply(VariableKind::turn, place.at, false, at.pose);
-      turn(place.rate[0] * axis, place.acceleration[0] * axis, at);
-      break;
+    case VariableKind::slide: {
+      const Vector3 axis = frame.rotation.col(2);
+      return {slide_along(place.rate[0] * axis), slide_along(place.acceleration[0] * axis)};
     }
-    case VariableKind::slide: slide(place.at[0], place.rate[0], place.acceleration[0], at); break;
     case VariableKind::ball: {
-      // Rates are in the axes of the ball's far side: behind it, or, passed backwards, before it.
-      const Matrix3 before = at.pose.rotation;
-      apply(VariableKind::ball, place.at, piece.inverse, at.pose);
-      const Matrix3& axes = piece.inverse ? before : at.pose.rotation;
-      const double sign = piece.inverse ? -1.0 : 1.0;
-      // turn() takes the axes as carried along before the ball. Behind it they are carried by it as well, which
-      // changes nothing: the rate is its own axis.
-      turn(sign * (axes * place.rate), sign * (axes * place.acceleration), at);
-      break;
+      const Vector3 rate = sign * (frame.rotation * place.rate);
+      return {turn_about(frame, rate), turn_about(frame, sign * (frame.rotation * place.acceleration))};
     }
+    case VariableKind::turn: break;
   }
+  const Vector3 axis = frame.rotation.col(2), moment = frame.position.cross(axis);
+  return {{place.rate[0] * axis, place.rate[0] * moment},
+          {place.acceleration[0] * axis, place.acceleration[0] * moment}};
+}
+
+/// The rate of a twist that is carried along with another.
+Twist carried(const Twist& twist, const Twist& with) {
+  return {with.angular.cross(twist.angular), with.angular.cross(twist.linear) + with.linear.cross(twist.angular)};
 }
 
 }  // namespace
@@ -141,46 +91,68 @@ TrackedWay tracked(const Way& way) {
     result.pieces.push_back({kind_of(leg.kind), leg.inverse && !turned, leg.variable, to});
   }
   result.last = turned ? turned_round_before(way.last) : way.last;
+  result.frames.resize(result.pieces.size());
   return result;
 }
 
-void TrackedPlaces::place_run(Run& run) const {
+void TrackedPlaces::place(TrackedWay& way) const {
   Pose at;
-  run.screws.clear();
-  for (const Piece& piece : run.motions) {
-    at = at * piece.to;
-    const Matrix3 before = at.rotation;
+  for (std::size_t i = 0; i < way.pieces.size(); ++i) {
+    const Piece& piece = way.pieces[i];
+    at = i == 0 ? piece.to : at * piece.to;
+    const bool before = piece.kind == Piece::Kind::run ? !piece.inverse : piece.inverse;
+    if (before) way.frames[i] = at;
     pass(piece, *this, at);
-    if (!run.unknown) continue;
-    const Vector3& p = at.position;
-    if (piece.kind == Piece::Kind::ball) {
-      const Matrix3 axes = piece.inverse ? Matrix3(-before) : at.rotation;
-      for (std::uint8_t k = 0; k < 3; ++k) {
-        run.screws.push_back({piece.index, k, axes.col(k), p.cross(axes.col(k))});
-      }
-    } else if (piece.kind == Piece::Kind::turn) {
-      run.screws.push_back({piece.index, 0, at.rotation.col(2), p.cross(at.rotation.col(2))});
-    } else {
-      run.screws.push_back({piece.index, 0, Vector3::Zero(), at.rotation.col(2)});
-    }
+    if (!before) way.frames[i] = at;
   }
-  run.forwards.pose = at;
-  run.backwards.pose = at.inverse();
+  way.end = at * way.last;
 }
 
-void TrackedPlaces::move_run(Run& run) const {
-  run.forwards = MovingPose{};
-  for (const Piece& piece : run.motions) {
-    carry(piece.to, run.forwards);
-    pass(piece, *this, run.forwards);
+void TrackedPlaces::place(Run& run) const {
+  place(run.way);
+  run.backwards = run.way.end.inverse();
+  if (!run.unknown) return;
+  run.screws.clear();
+  for (std::size_t i = 0; i < run.way.pieces.size(); ++i) {
+    const Piece& piece = run.way.pieces[i];
+    const Pose& frame = run.way.frames[i];
+    if (piece.kind == Piece::Kind::ball) {
+      const double sign = piece.inverse ? -1.0 : 1.0;
+      for (std::uint8_t k = 0; k < 3; ++k) {
+        run.screws.push_back({piece.index, k, turn_about(frame, sign * frame.rotation.col(k))});
+      }
+    } else {
+      const Vector3 axis = frame.rotation.col(2);
+      run.screws.push_back(
+          {piece.index, 0, piece.kind == Piece::Kind::turn ? turn_about(frame, axis) : slide_along(axis)});
+    }
   }
-  run.backwards = inverse(run.forwards);
+}
+
+WayMotion TrackedPlaces::motion(const TrackedWay& way) const {
+  WayMotion sum;
+  for (std::size_t i = 0; i < way.pieces.size(); ++i) {
+    const WayMotion own = motion_of(way.pieces[i], *this, way.frames[i]);
+    sum.rate = i == 0 ? own.rate : sum.rate + own.rate + carried(own.twist, sum.twist);
+    sum.twist = sum.twist + own.twist;
+  }
+  return sum;
+}
+
+Twist screw(const TrackedWay& way, std::uint32_t variable) {
+  for (std::size_t i = 0; i < way.pieces.size(); ++i) {
+    const Piece& piece = way.pieces[i];
+    if (piece.kind == Piece::Kind::run || piece.index != variable) continue;
+    const Vector3 axis = way.frames[i].rotation.col(2);
+    return piece.kind == Piece::Kind::turn ? turn_about(way.frames[i], axis) : slide_along(axis);
+  }
+  return {};
 }
 
 void TrackedPlaces::take_errors(std::span<const double> errors, Run& run) const {
   run.turn_error = 0.0;
   double reach = 0.0, shift = 0.0;
-  for (const Piece& piece : run.motions) {
+  for (const Piece& piece : run.way.pieces) {
     reach += piece.to.position.norm();
     if (piece.kind == Piece::Kind::slide) {
       reach += std::abs(variables[piece.index].at[0]);
@@ -191,49 +163,6 @@ void TrackedPlaces::take_errors(std::span<const double> errors, Run& run) const 
   }
   // Turns shift the end by as much as the run is long, at most.
   run.shift_error = std::max(shift, run.turn_error * reach);
-}
-
-MovingPose moving_end(const TrackedWay& way, const TrackedPlaces& places) {
-  MovingPose at;
-  for (const Piece& piece : way.pieces) {
-    carry(piece.to, at);
-    pass(piece, places, at);
-  }
-  carry(way.last, at);
-  return at;
-}
-
-WaySlope slope(const TrackedWay& way, const TrackedPlaces& places, std::uint32_t variable) {
-  WaySlope result;
-  Vector3 point = Vector3::Zero();
-  for (const Piece& piece : way.pieces) {
-    result.pose = result.pose * piece.to;
-    pass(piece, places, result.pose);
-    if (piece.kind == Piece::Kind::run || piece.index != variable) continue;
-    if (piece.kind == Piece::Kind::turn) {
-      result.angular = result.pose.rotation.col(2);
-      point = result.pose.position;
-    } else {
-      result.linear = result.pose.rotation.col(2);
-    }
-  }
-  result.pose = result.pose * way.last;
-  result.linear += result.angular.cross(result.pose.position - point);
-  return result;
-}
-
-Pose end_with_frames(const TrackedWay& way, const TrackedPlaces& places, std::vector<Pose>& frames) {
-  frames.clear();
-  Pose at;
-  for (const Piece& piece : way.pieces) {
-    at = at * piece.to;
-    // Rates of a ball are about axes of its far side.
-    const bool before = piece.kind == Piece::Kind::run ? !piece.inverse : piece.inverse;
-    if (before) frames.push_back(at);
-    pass(piece, places, at);
-    if (!before) frames.push_back(at);
-  }
-  return at * way.last;
 }
 
 }  // namespace koppel

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "closure/loop_cut.hpp"
+#include "spatial/twist.hpp"
 
 namespace koppel {
 
@@ -16,13 +17,6 @@ struct MovingPlace {
   Place<double> at{};              ///< as Place
   Vector3 rate = Vector3::Zero();  ///< of turns and slides the first component
   Vector3 acceleration = Vector3::Zero();
-};
-
-/// A pose and its motion, in the axes of the walk's start; velocity and acceleration are of the origin.
-struct MovingPose {
-  Pose pose;
-  Vector3 angular_velocity = Vector3::Zero(), velocity = Vector3::Zero();
-  Vector3 angular_acceleration = Vector3::Zero(), acceleration = Vector3::Zero();
 };
 
 /// A motion on a tracked way, or a run of them, and the constant transformation before it. Turns and slides are always
@@ -38,37 +32,59 @@ struct Piece {
 struct TrackedWay {
   std::vector<Piece> pieces;
   Pose last;
+  // Where it stands, in the frame of its start.
+  /// Of each piece the frame whose axes its rates are about: of a turn, a slide or a ball behind it, of a run before
+  /// it; of what is passed backwards on the other side.
+  std::vector<Pose> frames;
+  Pose end;
 };
 TrackedWay tracked(const Way& way);
 
-/// A screw of a run, about the origin of its start and in its axes.
+/// How the end of a way moves: its twist about the origin of the start, in the axes of the start, and its derivative.
+struct WayMotion {
+  Twist twist, rate;
+
+  /// Of the end's origin, which stands at p.
+  Vector3 velocity(const Vector3& p) const { return velocity_at(twist, p); }
+  Vector3 acceleration(const Vector3& p) const { return velocity_at(rate, p) + twist.angular.cross(velocity(p)); }
+};
+
+/// What a run does per rad/s or m/s of one of its rates.
 struct RunScrew {
   std::uint32_t variable = 0;
   std::uint8_t rate = 0;  ///< of a ball: about its x, y, z
-  Vector3 angular, linear;
+  Twist twist;            ///< about the origin of the run's start
 };
 
 /// Consecutive motions; begins in the frame of the first and ends in that which the last has moved.
 struct Run {
-  std::vector<Piece> motions;
+  TrackedWay way;
   bool unknown = false;  ///< of a block: its screws are wanted
-  // Where it stands.
-  MovingPose forwards, backwards;
+  // Where it stands and how it moves.
+  Pose backwards;  ///< its start in its end
+  WayMotion motion;
   std::vector<RunScrew> screws;
   double turn_error = 0.0, shift_error = 0.0;  ///< of its end [rad, m]
 };
 
+/// Where all variables and runs stand.
 struct TrackedPlaces {
   std::vector<MovingPlace> variables;
   std::vector<Run> runs;
 
-  /// Takes over where a run's variables stand.
-  void place_run(Run& run) const;
-  /// And how they move.
-  void move_run(Run& run) const;
+  /// Takes over where the way's variables and runs stand.
+  void place(TrackedWay& way) const;
+  void place(Run& run) const;
+  /// How the end of a way moves that is placed.
+  WayMotion motion(const TrackedWay& way) const;
+  void move(Run& run) const { run.motion = motion(run.way); }
   /// errors: of the variables [rad, m].
   void take_errors(std::span<const double> errors, Run& run) const;
 };
+
+/// The end's twist for the rate 1 of one turn or slide, about the origin of the start; zero if the way does not pass
+/// it.
+Twist screw(const TrackedWay& way, std::uint32_t variable);
 
 /// A way, and the variables that its step solves for.
 struct WayOfStep {
@@ -80,19 +96,5 @@ struct WayOfStep {
 /// Puts runs in place of motions that are passed together often enough. No run mixes what a step solves for with what
 /// it is given. `unknown` is set of those that a step solves for.
 std::vector<Run> share_runs(std::span<const WayOfStep> ways);
-
-/// The end of a way in its start, and how it moves.
-MovingPose moving_end(const TrackedWay& way, const TrackedPlaces& places);
-
-/// The end of a way, and how it changes with the rate of one scalar variable (zero if the way does not pass it).
-struct WaySlope {
-  Pose pose;
-  Vector3 angular = Vector3::Zero(), linear = Vector3::Zero();
-};
-WaySlope slope(const TrackedWay& way, const TrackedPlaces& places, std::uint32_t variable);
-
-/// The end of a way. frames: of each piece the one whose axes its rates are about: of a turn, a slide or a ball behind
-/// it, of a run before it; of what is passed backwards on the other side.
-Pose end_with_frames(const TrackedWay& way, const TrackedPlaces& places, std::vector<Pose>& frames);
 
 }  // namespace koppel

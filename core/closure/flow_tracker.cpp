@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "closure/loop_cut.hpp"
 #include "spatial/quaternion.hpp"
@@ -115,6 +116,26 @@ void FlowTracker::compile_joint(const Flow& flow, const FlowStep& from, Step& st
     step.inverse.push_back(motion.inverse);
     step.against = step.against || (i == 1 && motion.to.rotation(2, 2) < 0.0);
   }
+  const bool turn = step.unknowns.size() == 1 && variables_[step.unknowns[0]].kind == VariableKind::turn;
+  if (turn) step.sum = sum_of_turns(step.around);
+}
+
+/// The turn between the ends of a way, backwards, if all turns on it are about the z axis of its ends.
+std::optional<FlowTracker::TurnSum> FlowTracker::sum_of_turns(const TrackedWay& around) {
+  constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+  const auto along_z = [&](const Matrix3& r) { return r.col(2).head<2>().lpNorm<Eigen::Infinity>() <= rounding; };
+  TurnSum sum;
+  Matrix3 r = Matrix3::Identity();
+  for (const Piece& piece : around.pieces) {
+    r = (r * piece.to.rotation).eval();
+    if (piece.kind == Piece::Kind::slide) continue;
+    if (piece.kind != Piece::Kind::turn || !along_z(r)) return std::nullopt;
+    sum.terms.push_back({piece.index, r(2, 2) > 0.0 ? -1.0 : 1.0});
+  }
+  r = (r * around.last.rotation).eval();
+  if (!along_z(r)) return std::nullopt;
+  sum.constant = std::atan2(r(0, 1) - r(1, 0), r(0, 0) + r(1, 1));
+  return sum;
 }
 
 /// Runs that the walked conditions, and the joints that are read, have in common.
@@ -129,7 +150,7 @@ void FlowTracker::compile_runs() {
         ways.push_back({way, step.unknowns, together ? of_block : of_condition});
       }
     }
-    if (step.kind == StepKind::joint) ways.push_back({&step.around, {}, 1});
+    if (step.kind == StepKind::joint && !step.sum) ways.push_back({&step.around, {}, 1});
   }
   places_.runs = share_runs(ways);
   std::vector<std::size_t> known_after(variables_.size(), 0);  // steps

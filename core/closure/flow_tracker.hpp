@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -55,12 +56,18 @@ class FlowTracker {
     TrackedWay lower, upper;
     std::array<double, 2> rigid{};  ///< the condition's values on ways without motions
   };
+  /// An angle as a sum of others.
+  struct TurnSum {
+    double constant = 0.0;
+    std::vector<std::pair<std::uint32_t, double>> terms;  ///< variables, +-1
+  };
   struct Step {
     StepKind kind = StepKind::one_unknown;
     std::vector<std::uint32_t> unknowns;
     std::vector<std::uint32_t> given;
     std::vector<Row> rows;
     TrackedWay around;                ///< of a joint: from behind it to before it
+    std::optional<TurnSum> sum;       ///< of a joint that is a turn among parallel ones: instead of the way around
     bool against = false;             ///< of a joint: its slide points against its turn
     std::vector<bool> inverse;        ///< of a joint: of each unknown that is a ball
     std::vector<int> column;          ///< of a block: of each variable the first column, -1: given or not there
@@ -89,6 +96,7 @@ class FlowTracker {
 
   bool compile(const Flow& flow, const FlowStep& from, std::vector<Place<double>>& places, Step& step) const;
   void compile_joint(const Flow& flow, const FlowStep& from, Step& step) const;
+  static std::optional<TurnSum> sum_of_turns(const TrackedWay& around);
   void compile_runs();
 
   bool follow_steps(const Sides& sides);
@@ -117,6 +125,7 @@ class FlowTracker {
   Eigen::Matrix2d jacobian_of(const Step& step) const;
   std::size_t steepest(Step& step);
   void read_joint(Step& step);
+  void read_sum(const TurnSum& sum, std::uint32_t variable);
   void read_ball(const Pose& before, const WayMotion& motion, bool inverse, std::uint32_t variable);
 
   double slope(Row& row, std::uint32_t variable);

@@ -213,14 +213,19 @@ bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
 
 /// The walk leads from behind the joint to before it, so that it shows the joint's motion backwards.
 void FlowTracker::read_joint(Step& step) {
-  places_.place(step.around);
-  const Pose& before = step.around.end;
-  const WayMotion motion = places_.motion(step.around);
   // What the worst of the given coordinates leaves.
   double error = 32.0 * eps;
   for (const std::uint32_t v : step.given) {
     error = std::max(error, errors_[v] / unit(v));
   }
+  if (step.sum) {
+    read_sum(*step.sum, step.unknowns[0]);
+    take_error(step.unknowns[0], error);
+    return;
+  }
+  places_.place(step.around);
+  const Pose& before = step.around.end;
+  const WayMotion motion = places_.motion(step.around);
   for (std::size_t i = 0; i < step.unknowns.size(); ++i) {
     const std::uint32_t x = step.unknowns[i];
     switch (variables_[x].kind) {
@@ -243,6 +248,18 @@ void FlowTracker::read_joint(Step& step) {
     }
     take_error(x, error);
   }
+}
+
+void FlowTracker::read_sum(const TurnSum& sum, std::uint32_t x) {
+  double angle = sum.constant, v = 0.0, a = 0.0;
+  for (const auto& [variable, sign] : sum.terms) {
+    angle += sign * (*q_)[variables_[variable].q];
+    v += sign * (*v_)[variables_[variable].v];
+    a += sign * (*a_)[variables_[variable].v];
+  }
+  const double start = (*q_)[variables_[x].q];
+  place(x, start + std::remainder(angle - start, 2.0 * std::numbers::pi));
+  set_motion(x, v, a);
 }
 
 /// Quaternion, angular velocity and acceleration in the axes of the ball's outlet: that is behind the joint, or before

@@ -17,7 +17,7 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr int most_iterations = 8;
 constexpr double largest_move = 0.35;    // from the start values, in radians or lengths
 constexpr double least_slope = 0.03;     // of a condition over its size
-constexpr double all_but_solved = 1e-9;  // a correction whose square, times what bends, is rounding
+constexpr double all_but_solved = 1e-8;  // a correction whose square, times what bends, is rounding
 // Where other branches cannot be near: as Closing has it.
 constexpr double surely_nearest = 0.25;
 constexpr double well_conditioned = 1e3;

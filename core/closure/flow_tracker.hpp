@@ -110,7 +110,7 @@ class FlowTracker {
   bool solve_two(const Step& step, std::int8_t side);
   bool solve_block(Step& step, std::int8_t side);
   template <typename Unknown>
-  Linear linearise(Row& row, const Unknown& unknown);
+  Linear linearise(const Row& row, const Unknown& unknown);
   template <typename Unknown>
   void linearise(const TrackedWay& way, const ConditionSlope<double>& slope, const Unknown& unknown, Linear& at) const;
   double walked_slope(Row& row, std::uint32_t variable) const;

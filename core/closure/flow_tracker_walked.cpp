@@ -24,20 +24,19 @@ constexpr double well_conditioned = 1e3;
 
 }  // namespace
 
-/// A condition where its variables stand. unknown(variable, rate, by): takes over the derivative by an unknown, per rad
+/// A condition whose ways are placed. unknown(variable, rate, by): takes over the derivative by an unknown, per rad
 /// or m; false: it is none.
 template <typename Unknown>
-FlowTracker::Linear FlowTracker::linearise(Row& row, const Unknown& unknown) {
+FlowTracker::Linear FlowTracker::linearise(const Row& row, const Unknown& unknown) {
   const double over_size = 1.0 / size_of(row.condition, length_);
   Linear at;
   for (const bool upper : {false, true}) {
-    TrackedWay& way = upper ? row.upper : row.lower;
+    const TrackedWay& way = upper ? row.upper : row.lower;
     const double sign = upper ? -over_size : over_size;
     if (way.pieces.empty()) {
       at.open += sign * row.rigid[upper];
       continue;
     }
-    places_.place(way);
     at.open += sign * value(row.condition, way.end);
     ConditionSlope<double> slope = koppel::slope(row.condition, way.end);
     slope.angular *= sign;
@@ -109,6 +108,7 @@ bool FlowTracker::solve_walk(Row& row, std::uint32_t x, double& slope) {
   if (!(harmonic ? solve_harmonic(row, x) : solve_by_slopes(row, x))) return false;
   const double unit = this->unit(x);
   slope = 0.0;
+  for (TrackedWay* way : {&row.lower, &row.upper}) places_.place_again(*way, x);
   const Linear at = linearise(row, [&](std::uint32_t variable, std::uint8_t, double by) {
     if (variable == x) slope += unit * by;
     return variable == x;
@@ -182,15 +182,17 @@ bool FlowTracker::solve_by_slopes(Row& row, std::uint32_t x) {
 void FlowTracker::linearise(Step& step, BlockMatrix& jacobian, BlockLinear& at) {
   jacobian.setZero();
   for (Eigen::Index k = 0; k < step.size; ++k) {
-    const Linear row =
-        linearise(step.rows[static_cast<std::size_t>(k)], [&](std::uint32_t x, std::uint8_t rate, double by) {
-          const int column = step.column[x];
-          if (column >= 0) jacobian(k, column + rate) += unit(x) * by;
-          return column >= 0;
-        });
-    at.open[k] = row.open;
-    at.given[k] = row.given;
-    at.uncertain[k] = row.uncertain;
+    Row& row = step.rows[static_cast<std::size_t>(k)];
+    places_.place(row.lower);
+    places_.place(row.upper);
+    const Linear linear = linearise(row, [&](std::uint32_t x, std::uint8_t rate, double by) {
+      const int column = step.column[x];
+      if (column >= 0) jacobian(k, column + rate) += unit(x) * by;
+      return column >= 0;
+    });
+    at.open[k] = linear.open;
+    at.given[k] = linear.given;
+    at.uncertain[k] = linear.uncertain;
   }
 }
 

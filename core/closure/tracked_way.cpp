@@ -95,17 +95,28 @@ TrackedWay tracked(const Way& way) {
   return result;
 }
 
-void TrackedPlaces::place(TrackedWay& way) const {
+/// What stands before the first piece, and before its motion, is placed.
+void TrackedPlaces::place_from(TrackedWay& way, std::size_t first) const {
   Pose at;
-  for (std::size_t i = 0; i < way.pieces.size(); ++i) {
+  for (std::size_t i = first; i < way.pieces.size(); ++i) {
     const Piece& piece = way.pieces[i];
-    at = i == 0 ? piece.to : at * piece.to;
-    const bool before = piece.kind == Piece::Kind::run ? !piece.inverse : piece.inverse;
-    if (before) way.frames[i] = at;
+    const bool behind = piece.kind == Piece::Kind::ball ? !piece.inverse : piece.inverse;
+    if (i == 0) {
+      at = piece.to;
+    } else {
+      at = i == first ? way.frames[i] : at * piece.to;
+    }
+    if (!behind) way.frames[i] = at;
     pass(piece, *this, at);
-    if (!before) way.frames[i] = at;
+    if (behind) way.frames[i] = at;
   }
   way.end = at * way.last;
+}
+
+void TrackedPlaces::place_again(TrackedWay& way, std::uint32_t moved) const {
+  for (std::size_t i = 0; i < way.pieces.size(); ++i) {
+    if (way.pieces[i].kind != Piece::Kind::run && way.pieces[i].index == moved) return place_from(way, i);
+  }
 }
 
 void TrackedPlaces::place(Run& run) const {

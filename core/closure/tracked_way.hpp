@@ -33,8 +33,8 @@ struct TrackedWay {
   std::vector<Piece> pieces;
   Pose last;
   // Where it stands, in the frame of its start.
-  /// Of each piece the frame whose axes its rates are about: of a turn, a slide or a ball behind it, of a run before
-  /// it; of what is passed backwards on the other side.
+  /// Of each piece the frame whose axes its rates are about: of a turn, a slide or a run before it, of a ball behind
+  /// it; of a ball or a run that is passed backwards on the other side.
   std::vector<Pose> frames;
   Pose end;
 };
@@ -73,13 +73,18 @@ struct TrackedPlaces {
   std::vector<Run> runs;
 
   /// Takes over where the way's variables and runs stand.
-  void place(TrackedWay& way) const;
+  void place(TrackedWay& way) const { place_from(way, 0); }
+  /// Again after one turn or slide has moved.
+  void place_again(TrackedWay& way, std::uint32_t moved) const;
   void place(Run& run) const;
   /// How the end of a way moves that is placed.
   WayMotion motion(const TrackedWay& way) const;
   void move(Run& run) const { run.motion = motion(run.way); }
   /// errors: of the variables [rad, m].
   void take_errors(std::span<const double> errors, Run& run) const;
+
+ private:
+  void place_from(TrackedWay& way, std::size_t first) const;
 };
 
 /// The end's twist for the rate 1 of one turn or slide, about the origin of the start; zero if the way does not pass

@@ -130,7 +130,7 @@ std::optional<FlowTracker::TurnSum> FlowTracker::sum_of_turns(const TrackedWay& 
     r = (r * piece.to.rotation).eval();
     if (piece.kind == Piece::Kind::slide) continue;
     if (piece.kind != Piece::Kind::turn || !along_z(r)) return std::nullopt;
-    sum.terms.push_back({piece.index, r(2, 2) > 0.0 ? -1.0 : 1.0});
+    sum.terms.emplace_back(piece.index, r(2, 2) > 0.0 ? -1.0 : 1.0);
   }
   r = (r * around.last.rotation).eval();
   if (!along_z(r)) return std::nullopt;

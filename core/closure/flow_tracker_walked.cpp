@@ -62,6 +62,7 @@ void FlowTracker::linearise(const TrackedWay& way, const ConditionSlope<double>&
     if (piece.kind == Piece::Kind::run) {
       const Run& run = places_.runs[piece.index];
       const ConditionSlope<double> local{sign * (axes.transpose() * moment), sign * (axes.transpose() * slope.linear)};
+      // A block's own runs are given to the steps behind it: the first variable tells for all.
       if (run.unknown && unknown(run.screws.front().variable, 0, 0.0)) {
         for (const RunScrew& screw : run.screws) {
           unknown(screw.variable, screw.rate, local.along(screw.twist.angular, screw.twist.linear));

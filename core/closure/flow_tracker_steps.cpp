@@ -213,15 +213,11 @@ bool FlowTracker::solve_two(const Step& step, std::int8_t side) {
 
 /// The walk leads from behind the joint to before it, so that it shows the joint's motion backwards.
 void FlowTracker::read_joint(Step& step) {
+  if (step.sum) return read_sum(*step.sum, step.unknowns[0]);
   // What the worst of the given coordinates leaves.
   double error = 32.0 * eps;
   for (const std::uint32_t v : step.given) {
     error = std::max(error, errors_[v] / unit(v));
-  }
-  if (step.sum) {
-    read_sum(*step.sum, step.unknowns[0]);
-    take_error(step.unknowns[0], error);
-    return;
   }
   places_.place(step.around);
   const Pose& before = step.around.end;
@@ -251,15 +247,20 @@ void FlowTracker::read_joint(Step& step) {
 }
 
 void FlowTracker::read_sum(const TurnSum& sum, std::uint32_t x) {
-  double angle = sum.constant, v = 0.0, a = 0.0;
+  const double start = (*q_)[variables_[x].q];
+  double angle = sum.constant, v = 0.0, a = 0.0, error = 0.0, size = std::abs(start) + std::abs(angle);
   for (const auto& [variable, sign] : sum.terms) {
-    angle += sign * (*q_)[variables_[variable].q];
+    const double term = (*q_)[variables_[variable].q];
+    angle += sign * term;
     v += sign * (*v_)[variables_[variable].v];
     a += sign * (*a_)[variables_[variable].v];
+    error += errors_[variable];
+    size += std::abs(term);
   }
-  const double start = (*q_)[variables_[x].q];
   place(x, start + std::remainder(angle - start, 2.0 * std::numbers::pi));
   set_motion(x, v, a);
+  // Each addition rounds what is at most the sum of all sizes.
+  take_error(x, error + static_cast<double>(sum.terms.size() + 2) * eps * size);
 }
 
 /// Quaternion, angular velocity and acceleration in the axes of the ball's outlet: that is behind the joint, or before

@@ -1,6 +1,5 @@
 // Which motions several ways have in common.
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <map>
@@ -12,18 +11,7 @@
 namespace koppel {
 namespace {
 
-constexpr std::size_t least_length = 2;  // of a run that saves anything
-
 using Pieces = std::span<const Piece>;
-
-bool turns_round(const Piece& piece) { return piece.kind != Piece::Kind::ball; }
-
-/// Half a turn about x, of turns and slides: backwards they are what they are forwards in a frame turned round so.
-Pose turning_round(const Piece& piece) {
-  Pose result;
-  if (turns_round(piece)) result.rotation.diagonal() << 1.0, -1.0, -1.0;
-  return result;
-}
 
 /// The motions of a run passed backwards, but for what turns its ends round.
 std::vector<Piece> backwards(Pieces run) {
@@ -32,7 +20,7 @@ std::vector<Piece> backwards(Pieces run) {
     if (result[i].kind == Piece::Kind::ball) result[i].inverse = !result[i].inverse;
     if (i == 0) continue;
     const Pose& between = run[run.size() - i].to;
-    result[i].to = turning_round(result[i - 1]) * between.inverse() * turning_round(result[i]);
+    result[i].to = turning_round(result[i - 1].kind) * between.inverse() * turning_round(result[i].kind);
   }
   result.front().to = Pose{};
   return result;
@@ -70,7 +58,6 @@ std::vector<Stretch> stretches_of(const WayOfStep& of) {
     if (result.empty() || result.back().unknown != unknown) result.push_back({&of, i, 0, unknown});
     ++result.back().count;
   }
-  std::erase_if(result, [](const Stretch& s) { return s.count < least_length; });
   return result;
 }
 
@@ -177,8 +164,8 @@ void Sharing::replace(const Stretch& stretch) {
       count = found->count;
       piece = {Piece::Kind::run, found->inverse, found->run, piece.to};
       if (found->inverse) {
-        piece.to = piece.to * turning_round(left.front());
-        before = turning_round(left[count - 1]);
+        piece.to = piece.to * turning_round(left.front().kind);
+        before = turning_round(left[count - 1].kind);
       }
       Run& run = runs[found->run];
       run.unknown = run.unknown || stretch.unknown;

@@ -7,17 +7,6 @@
 namespace koppel {
 namespace {
 
-/// Half a turn about x: what turns the z axis of a frame round.
-Pose turned_round(Pose frame) {
-  frame.rotation.rightCols<2>() *= -1.0;
-  return frame;
-}
-Pose turned_round_before(Pose frame) {
-  frame.rotation.bottomRows<2>() *= -1.0;
-  frame.position.tail<2>() *= -1.0;
-  return frame;
-}
-
 VariableKind kind_of(const Piece& piece) {
   switch (piece.kind) {
     case Piece::Kind::slide: return VariableKind::slide;
@@ -46,9 +35,18 @@ void pass(const Piece& piece, const TrackedPlaces& places, Pose& at) {
   }
 }
 
-/// What turns about an axis, or slides along it, does about the origin.
 Twist turn_about(const Pose& frame, const Vector3& rate) { return {rate, frame.position.cross(rate)}; }
-Twist slide_along(const Vector3& rate) { return {Vector3::Zero(), rate}; }
+
+/// What a variable's piece does about the origin for 1 of one of its rates.
+Twist screw_of(const Piece& piece, const Pose& frame, std::uint8_t rate = 0) {
+  const Matrix3& axes = frame.rotation;
+  switch (kind_of(piece)) {
+    case VariableKind::ball: return turn_about(frame, (piece.inverse ? -1.0 : 1.0) * axes.col(rate));
+    case VariableKind::slide: return {Vector3::Zero(), axes.col(2)};
+    case VariableKind::turn: break;
+  }
+  return turn_about(frame, axes.col(2));
+}
 
 /// What one piece does, its frame being given; and how it changes by its own motion alone.
 WayMotion motion_of(const Piece& piece, const TrackedPlaces& places, const Pose& frame) {
@@ -58,20 +56,12 @@ WayMotion motion_of(const Piece& piece, const TrackedPlaces& places, const Pose&
     return {transformed(frame, sign * motion.twist), transformed(frame, sign * motion.rate)};
   }
   const MovingPlace& place = places.variables[piece.index];
-  switch (kind_of(piece)) {
-    case VariableKind::slide: {
-      const Vector3 axis = frame.rotation.col(2);
-      return {slide_along(place.rate[0] * axis), slide_along(place.acceleration[0] * axis)};
-    }
-    case VariableKind::ball: {
-      const Vector3 rate = sign * (frame.rotation * place.rate);
-      return {turn_about(frame, rate), turn_about(frame, sign * (frame.rotation * place.acceleration))};
-    }
-    case VariableKind::turn: break;
+  if (piece.kind == Piece::Kind::ball) {
+    return {turn_about(frame, sign * (frame.rotation * place.rate)),
+            turn_about(frame, sign * (frame.rotation * place.acceleration))};
   }
-  const Vector3 axis = frame.rotation.col(2), moment = frame.position.cross(axis);
-  return {{place.rate[0] * axis, place.rate[0] * moment},
-          {place.acceleration[0] * axis, place.acceleration[0] * moment}};
+  const Twist screw = screw_of(piece, frame);
+  return {place.rate[0] * screw, place.acceleration[0] * screw};
 }
 
 /// The rate of a twist that is carried along with another.
@@ -81,16 +71,22 @@ Twist carried(const Twist& twist, const Twist& with) {
 
 }  // namespace
 
+Pose turning_round(Piece::Kind kind) {
+  Pose result;
+  if (kind != Piece::Kind::ball) result.rotation.diagonal() << 1.0, -1.0, -1.0;
+  return result;
+}
+
 TrackedWay tracked(const Way& way) {
   TrackedWay result;
-  bool turned = false;
+  Pose before;  // what the leg before leaves to be turned back
   for (const Leg& leg : way.legs) {
-    Pose to = turned ? turned_round_before(leg.to) : leg.to;
-    turned = leg.inverse && leg.kind != VariableKind::ball;
-    if (turned) to = turned_round(to);
-    result.pieces.push_back({kind_of(leg.kind), leg.inverse && !turned, leg.variable, to});
+    const Piece::Kind kind = kind_of(leg.kind);
+    const Pose turned = leg.inverse ? turning_round(kind) : Pose{};
+    result.pieces.push_back({kind, leg.inverse && kind == Piece::Kind::ball, leg.variable, before * leg.to * turned});
+    before = turned;
   }
-  result.last = turned ? turned_round_before(way.last) : way.last;
+  result.last = before * way.last;
   result.frames.resize(result.pieces.size());
   return result;
 }
@@ -126,16 +122,9 @@ void TrackedPlaces::place(Run& run) const {
   run.screws.clear();
   for (std::size_t i = 0; i < run.way.pieces.size(); ++i) {
     const Piece& piece = run.way.pieces[i];
-    const Pose& frame = run.way.frames[i];
-    if (piece.kind == Piece::Kind::ball) {
-      const double sign = piece.inverse ? -1.0 : 1.0;
-      for (std::uint8_t k = 0; k < 3; ++k) {
-        run.screws.push_back({piece.index, k, turn_about(frame, sign * frame.rotation.col(k))});
-      }
-    } else {
-      const Vector3 axis = frame.rotation.col(2);
-      run.screws.push_back(
-          {piece.index, 0, piece.kind == Piece::Kind::turn ? turn_about(frame, axis) : slide_along(axis)});
+    const std::uint32_t rates = freedoms_of(kind_of(piece));
+    for (std::uint8_t k = 0; k < rates; ++k) {
+      run.screws.push_back({piece.index, k, screw_of(piece, run.way.frames[i], k)});
     }
   }
 }
@@ -153,9 +142,7 @@ WayMotion TrackedPlaces::motion(const TrackedWay& way) const {
 Twist screw(const TrackedWay& way, std::uint32_t variable) {
   for (std::size_t i = 0; i < way.pieces.size(); ++i) {
     const Piece& piece = way.pieces[i];
-    if (piece.kind == Piece::Kind::run || piece.index != variable) continue;
-    const Vector3 axis = way.frames[i].rotation.col(2);
-    return piece.kind == Piece::Kind::turn ? turn_about(way.frames[i], axis) : slide_along(axis);
+    if (piece.kind != Piece::Kind::run && piece.index == variable) return screw_of(piece, way.frames[i]);
   }
   return {};
 }

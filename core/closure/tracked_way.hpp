@@ -29,6 +29,10 @@ struct Piece {
   Pose to;
 };
 
+/// Half a turn about x: between two of them a turn or a slide does forwards what it does backwards without. Of a ball
+/// nothing.
+Pose turning_round(Piece::Kind kind);
+
 struct TrackedWay {
   std::vector<Piece> pieces;
   Pose last;

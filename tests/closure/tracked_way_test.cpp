@@ -132,7 +132,7 @@ TEST(TrackedWay, EndsAndMovesAsTheWalkDoes) {
     EXPECT_LE(size_of(motion.twist - twist_of_walk(moving, way, 0.0)), rounding(n));
     // A central difference is off by the step squared over six, times a third derivative of the twist: of products of
     // n motions with rates and accelerations of at most sqrt(3), below (2 n)^4 times the way's length of 3 n.
-    constexpr double step = 1e-4;
+    constexpr double step = 1e-5;
     const double rates = std::pow(2.0 * static_cast<double>(n), 4) * 3.0 * static_cast<double>(n);
     const Twist difference = twist_of_walk(moving, way, step) - twist_of_walk(moving, way, -step);
     EXPECT_LE(size_of(motion.rate - (0.5 / step) * difference), step * step / 6.0 * rates + rounding(n) / step);
